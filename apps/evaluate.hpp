@@ -10,7 +10,8 @@
 
 namespace roadbook {
 
-// `roadbook evaluate EXPERIMENT`: the experiments of the source documents, each with its figures.
+// `roadbook evaluate EXPERIMENT`: the experiments of the three source documents (docs/concepts.md)
+// and further studies.
 
 /// The arguments of every experiment.
 struct EvaluateCommand {
@@ -20,7 +21,7 @@ struct EvaluateCommand {
   std::filesystem::path data;    ///< recording, if the experiment needs one; may be empty
   std::string only;              ///< prefixes of effect names, "a,b" for several (diagnosis)
   std::uint64_t seed = 1;
-  int repeats = 0;     ///< worlds, maps, draws; 0: number in the document
+  int repeats = 0;     ///< worlds, maps or draws; 0: number of the experiment
   bool quick = false;  ///< only the main result
   int threads = 0;
 };

@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-// BRISK features of one half-size image (document 004, section III), spread evenly over it.
+// BRISK features of one half-size image [metric-semantic maps, section III], spread evenly over it.
 
 struct FeatureOptions {
   int max_features = 320;   ///< per image

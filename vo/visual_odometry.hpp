@@ -16,7 +16,7 @@ namespace roadbook {
 // cameras' height over the ground.
 
 struct VoOptions {
-  double spacing_m = 0.20;        ///< between keyframes (document 004, IV-B): KeyframeSpacing
+  double spacing_m = 0.20;        ///< between keyframes [metric-semantic maps, section IV-B]
   double turn_rad = 0.0873;       ///< heading change that also makes a keyframe: 5 degrees
   double feature_sigma_px = 0.6;  ///< of a corner, half-size image
   double inlier_px = 2.5;         ///< half-size image

@@ -268,7 +268,7 @@ void evaluate_causes(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment diagnosis_experiment() {
-  return {"diagnosis", "hidden effects in simulated drives, and what diagnosis says of them",
+  return {"diagnosis", "hidden effects in simulated drives, and which of them diagnosis finds",
           evaluate_causes};
 }
 

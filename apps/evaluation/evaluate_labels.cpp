@@ -291,8 +291,8 @@ void run_label_curves(Console& console, const EvaluateCommand& command) {
 
 Experiment labels_experiment() {
   return {"labels",
-          "what labels are worth, by what is asked and what counts as none (document 004, "
-          "figure 7)",
+          "quality of the label detector by the number of labels, for each choice of questions and "
+          "negatives (metric-semantic maps, figure 7)",
           run_label_curves};
 }
 

@@ -35,7 +35,7 @@ void run_laps(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment laps_experiment() {
-  return {"laps", "the cross slope that a real car's first lap tells of its second (--data TABLE)",
+  return {"laps", "cross slope of a real car's second lap, predicted from its first (--data TABLE)",
           run_laps};
 }
 

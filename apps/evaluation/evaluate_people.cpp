@@ -110,7 +110,9 @@ void run_people(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment people_experiment() {
-  return {"people", "people in fisheye images, better with each revisit (document 004, VI-B)",
+  return {"people",
+          "detection of people in fisheye images, better with each revisit "
+          "(metric-semantic maps, section VI-B)",
           run_people};
 }
 

@@ -171,7 +171,7 @@ void run_rows(Console& console, const EvaluateCommand& command) {
 
 Experiment rows_experiment() {
   return {"rows",
-          "what labelled rows of equal spaces do to a map (--only: drives whose names begin so)",
+          "accuracy of a map with and without --equal-rows (--only: beginnings of drive names)",
           run_rows};
 }
 

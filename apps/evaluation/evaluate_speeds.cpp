@@ -168,7 +168,9 @@ void run_evolution(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment speeds_experiment() {
-  return {"speeds", "evolution of the speed map over seven maps, wet patches (document 004, V-C)",
+  return {"speeds",
+          "evolution of the speed map over seven maps, wet patches (metric-semantic maps, "
+          "section V-C)",
           run_evolution};
 }
 

@@ -184,7 +184,7 @@ void run_spm_evaluation(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment spm_experiment() {
-  return {"spm", "semantic property map on ten simulated roads (document 000, section 4)",
+  return {"spm", "semantic property map on ten simulated roads (semantic property maps, section 4)",
           run_spm_evaluation};
 }
 

@@ -18,8 +18,8 @@ struct PeopleVisit {
   PeopleScore held_out;             ///< in the held-out visit, including this visit's examples
 };
 
-/// The detector of people over the revisits of `zurich` (document 004, VI-B: "as we see more
-/// pedestrians, the classifier becomes increasingly good at detecting them").
+/// The detector of people over the revisits of `zurich` [metric-semantic maps, section
+/// VI-B: "as we see more pedestrians, the classifier becomes increasingly good at detecting them"].
 struct PeopleStudyOptions {
   bool small = false;  ///< the small place, 640 x 480
   int visits = 6;

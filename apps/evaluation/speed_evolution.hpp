@@ -9,9 +9,9 @@
 
 namespace roadbook {
 
-/// The experiment of document 004, figure 10: seven maps of the Zurich car park, each with one more
-/// visit. People use the right crossing in visits 1 to 3 and the left one in visits 4 to 6.
-/// Detections are the true people within range and in sight.
+/// The experiment of [metric-semantic maps, figure 10]: seven maps of the Zurich car park, each
+/// with one more visit. People use the right crossing in visits 1 to 3 and the left one in visits 4
+/// to 6. Detections are the true people within range and in sight.
 struct SpeedEvolution {
   PresenceGrid grid;
   std::vector<std::vector<double>> presence;         ///< of each map, by node

@@ -49,11 +49,13 @@ Verb evaluate_verb() {
             options.add("--data", &command->data,
                         "recording (laps) or annotated pictures (labels)");
             options.add("--only", &command->only,
-                        "effects whose names begin so, `a,b` for several (diagnosis)");
-            options.add("--seed", &command->seed, "seed of every draw");
-            options.add("--repeats", &command->repeats, "worlds drawn; 0: as many as the document")
+                        "beginnings of effect names, separated by commas (diagnosis)");
+            options.add("--seed", &command->seed, "seed of all random numbers");
+            options
+                .add("--repeats", &command->repeats,
+                     "number of simulated worlds; 0: that of the experiment")
                 .range = {0, 1000};
-            options.add("--quick", &command->quick, "the main result alone");
+            options.add("--quick", &command->quick, "only the main result");
           },
           [command](Console& console, const CommonOptions& common) {
             command->threads = common.threads;

@@ -8,7 +8,8 @@
 
 namespace roadbook {
 
-// Normalised interpolation I_v^l (document 000, equation 6): what share of a place each knot has.
+// Normalised interpolation I_v^l [SPM, eq. 6]: the share of each knot in the value at a
+// place.
 
 /// The knots of one place and their shares. Reuse one object over many places: it keeps its memory.
 struct Interpolation {

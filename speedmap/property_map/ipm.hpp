@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-// Inverse perspective mapping: pixel to point on the ground, for any camera model (document 000,
-// equation 4, corrected: x = t + l R d with l = n.(r - t) / (n.R d); as printed the camera's place
-// is scaled with the ray and every pixel maps to the origin of a ground at z = 0).
+// Inverse perspective mapping: pixel to point on the ground, for any camera model [SPM, eq. 4,
+// corrected: x = t + l R d with l = n.(r - t) / (n.R d); as printed the camera's place
+// is scaled with the ray and every pixel maps to the origin of a ground at z = 0].
 
 /// Points x with normal . x = normal . point; the normal need not be of unit length.
 struct GroundPlane {

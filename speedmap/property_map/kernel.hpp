@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-// The sparse kernel of Melkumyan and Ramos (document 000, equation 7) with its support the right
+// The sparse kernel of Melkumyan and Ramos [SPM, eq. 7] with its support the right
 // way round: positive for d < D, zero from D on. Its amplitude cancels in the normalised
 // interpolation (6) and is left out: k(0) = 1.
 //

@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-/// Exact posterior of one measurement y as a mixture (document 000, Lemma 3, for any number of
-/// knots L): y came from class j of knot l with probability rho_lj ~ I_l u_j^l c_j, or from none.
+/// Exact posterior of one measurement y as a mixture [SPM, lemma 3, for any number of knots
+/// L]: y came from class j of knot l with probability rho_lj ~ I_l u_j^l c_j, or from none.
 struct PropertyMixture {
   std::vector<double> log_c;  ///< K: log marginal density of y under each class
   std::vector<double> rho;    ///< L x K; sums to `inlier`

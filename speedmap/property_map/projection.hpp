@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-// Bayesian moment matching (document 000, Lemma 4): the posterior after one measurement is a
+// Bayesian moment matching [SPM, lemma 4]: the posterior after one measurement is a
 // mixture and is put back into the family of the prior by matching some of its moments. Which ones
 // is a choice; docs/guide/friction.md has the comparison.
 

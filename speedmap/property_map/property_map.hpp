@@ -38,7 +38,7 @@ struct PropertyUpdateResult {
   double inlier = 1.0;        ///< probability that some class explains it
 };
 
-/// A semantic property map (document 000, section 3): knots in path coordinates, each with a belief
+/// A semantic property map [SPM, section 3]: knots in path coordinates, each with a belief
 /// about its class (Dirichlet, or one class with kDiscrete), and for every property one
 /// normal-gamma per class that all knots share.
 ///

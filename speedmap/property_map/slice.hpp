@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-// A piece of a property map for a controller (document 000, section 3.5, "externalisation"): the
+// A piece of a property map for a controller [SPM, section 3.5, "externalisation"]: the
 // knots around a horizon with their means and variances. It needs neither the map, nor the classes,
 // nor the path's geometry, and gives the same numbers as the map.
 

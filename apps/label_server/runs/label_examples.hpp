@@ -9,8 +9,9 @@
 
 namespace roadbook {
 
-// Carries the examples from the labels of one place to the detector of another place (document 004,
-// VI-A: "the classifier learned from this floor could be applied to" further floors).
+// Carries the examples from the labels of one place to the detector of another place
+// [metric-semantic maps, section VI-A: "the classifier learned from this floor could be applied to"
+// further floors].
 
 using ExamplesByKind = std::map<std::string, BoxExamples>;  ///< by class of label
 

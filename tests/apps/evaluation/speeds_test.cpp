@@ -11,8 +11,8 @@
 namespace roadbook {
 namespace {
 
-// Figure 10 of document 004: the first visit meets no person. People are on the right crossing in
-// revisits 1 to 3 and on the left crossing in revisits 4 to 6.
+// [Metric-semantic maps, figure 10]: the first visit meets no person. People are on the right
+// crossing in revisits 1 to 3 and on the left crossing in revisits 4 to 6.
 TEST(Speeds, DangerRisesOnTheRightCrossingFirstAndOnTheLeftOneThen) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);

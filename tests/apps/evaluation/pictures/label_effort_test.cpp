@@ -6,7 +6,8 @@
 #include "apps/evaluation/pictures/painted_lot.hpp"
 #include "semantics/detector/label_oracle.hpp"
 
-// Checks figure 7 of document 004: the effort and the time to find the 164 spaces of `stuttgart`.
+// Checks [metric-semantic maps, figure 7]: the effort and the time to find the 164 spaces of
+// `stuttgart`.
 
 namespace roadbook {
 namespace {
