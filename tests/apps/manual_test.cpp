@@ -3,11 +3,14 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "mapping/store/map_file_sqlite.hpp"
 #include "tests/apps/run_command.hpp"
+#include "tests/support/map_file_document.hpp"
 
 namespace roadbook {
 namespace {
@@ -54,6 +57,65 @@ void expect_nothing_learnt_twice(const fs::path& folder) {
   EXPECT_GE(after.at("examples"), before.at("examples"));
 }
 
+// Returns the columns of a table, without those that every layer has.
+std::vector<std::string> columns_of(const SqlDatabase& map, const std::string& table) {
+  std::vector<std::string> columns;
+  SqlStatement rows = map.prepare("SELECT name FROM pragma_table_info(?)");
+  rows.bind_text(1, table);
+  while (rows.step())
+    if (rows.text(0) != "fid" && rows.text(0) != "geom") columns.push_back(rows.text(0));
+  return columns;
+}
+
+// Returns the first column of the rows that `sql` gives.
+std::set<std::string> names_of(const SqlDatabase& map, const std::string& sql) {
+  std::set<std::string> names;
+  SqlStatement rows = map.prepare(sql);
+  while (rows.step()) names.insert(rows.text(0));
+  return names;
+}
+
+// Removes from `missing` what the map has, and expects that the document tells the same columns.
+void compare_with_document(const fs::path& file,
+                           const test::MapFileDocument& document,
+                           std::set<std::string>& missing) {
+  const SqlDatabase map(file, SqlMode::kRead);
+  const auto rasters =
+      names_of(map,
+               "SELECT table_name FROM gpkg_contents WHERE data_type LIKE '%tile%' OR "
+               "data_type LIKE '%coverage%'");
+  for (const std::string& raster : rasters)
+    EXPECT_TRUE(document.rasters.contains(raster)) << raster;
+  const auto tables =
+      names_of(map,
+               "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE "
+               "'gpkg_%' AND name NOT LIKE 'rtree_%' AND name NOT LIKE 'sqlite_%'");
+  for (const std::string& table : tables) {
+    missing.erase(table);
+    const auto columns = columns_of(map, table);
+    if (rasters.contains(table) || columns == std::vector<std::string>{"source"}) continue;
+    ASSERT_TRUE(document.columns.contains(table)) << table;
+    EXPECT_EQ(document.columns.at(table), columns) << table;
+  }
+}
+
+// Compares the reference of the map file with all maps that the manual's commands made.
+void expect_documented_maps(const fs::path& folder) {
+  std::ofstream(folder / "speeds.yaml") << "max_speed_mps: 7\n";
+  const auto speeds =
+      test::run_command("roadbook speeds -m place.gpkg --config speeds.yaml --quiet", folder);
+  ASSERT_EQ(speeds.status, 0) << speeds.err;
+  const auto document = test::read_map_file_document();
+  std::set<std::string> missing = document.rasters;
+  for (const auto& [name, columns] : document.columns) missing.insert(name);
+  for (const char* map : {"place.gpkg", "road.gpkg", "visit.gpkg"})
+    compare_with_document(folder / map, document, missing);
+  // The manual draws no further kind of label. The other tables are those of the label server:
+  // tests/apps/map_file_document_test.cpp compares them.
+  EXPECT_EQ(missing, (std::set<std::string>{"box_examples", "label_learning", "label_sightings",
+                                            "other_labels", "people_learning"}));
+}
+
 // Runs the main task of the manual from end to end: one drive through all verbs. The median error
 // against the simulation's truth must be below 5 cm, as promised for the map.
 TEST(Manual, EveryExampleWorksFromTheDriveToTheReport) {
@@ -78,6 +140,7 @@ TEST(Manual, EveryExampleWorksFromTheDriveToTheReport) {
       EXPECT_GE(object.at("coverage").get<double>(), 0.99);
     }
   }
+  expect_documented_maps(folder.path());
   expect_nothing_learnt_twice(folder.path());
   const auto check = test::run_command("roadbook check place.gpkg", folder.path());
   EXPECT_EQ(check.status, 0) << check.err;
