@@ -7,8 +7,9 @@
 
 namespace roadbook {
 
-/// 0 to 1 as colours from dark violet over green to yellow (close to "viridis", which keeps its
-/// order for the colour-blind and in grey).
+/// The colour (red, green, blue) of `part` in 0 to 1, from dark violet over green to yellow; values
+/// outside are clamped. Close to "viridis", whose order also colour-blind readers see, and grey
+/// prints show.
 [[nodiscard]] inline std::array<std::uint8_t, 3> colour_ramp(double part) {
   constexpr std::array<std::array<double, 3>, 5> kStops = {
       {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};

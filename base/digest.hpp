@@ -28,7 +28,7 @@ class Sha256 {
   /// The whole content of a file, streamed. Throws StorageError if it cannot be read.
   Sha256& update_file(const std::filesystem::path& file);
 
-  /// 64 lower-case hex digits of all that was fed in; starts afresh afterwards.
+  /// Returns 64 lower-case hex digits of everything added, and starts a new digest.
   [[nodiscard]] std::string hex();
 
  private:
@@ -37,6 +37,7 @@ class Sha256 {
 };
 
 [[nodiscard]] std::string sha256_hex(std::string_view text);
+/// The same of a file's content. Throws StorageError.
 [[nodiscard]] std::string sha256_file_hex(const std::filesystem::path& file);
 
 }  // namespace roadbook

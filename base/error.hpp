@@ -7,9 +7,8 @@
 
 namespace roadbook {
 
-// How roadbook says that something is wrong: exceptions for input that cannot be used, each with
-// the exit status the command gives; `Problem` for one fault with its place (docs/design: error
-// lines).
+// The exceptions of roadbook, each with the exit status of the command, and `Problem`: one fault in
+// an input, with file and line.
 
 enum class ExitStatus {
   kDone = 0,
@@ -45,7 +44,7 @@ class Error : public std::runtime_error {
   ExitStatus status_;
 };
 
-/// Input that cannot be used; carries every fault found, errors first in `what()`.
+/// Input that cannot be used. Carries every fault found; `what()` lists errors first.
 class BadInput : public Error {
  public:
   explicit BadInput(Problem problem);
@@ -67,16 +66,19 @@ class InvalidOption : public Error {
   Problem problem_;
 };
 
+/// A disk, permission or lock that does not work.
 class StorageError : public Error {
  public:
   explicit StorageError(const std::string& what) : Error(ExitStatus::kStorage, what) {}
 };
 
+/// A result that a quality check refused; it is not written.
 class Refused : public Error {
  public:
   explicit Refused(const std::string& what) : Error(ExitStatus::kRefused, what) {}
 };
 
+/// The user stopped the program.
 class Interrupted : public Error {
  public:
   explicit Interrupted(const std::string& what) : Error(ExitStatus::kInterrupted, what) {}

@@ -6,7 +6,8 @@
 
 namespace roadbook {
 
-/// Of a copy; of an even number the upper one. `values` must not be empty.
+/// The median of `values`; of an even number of values, the upper of the two middle ones. `values`
+/// must not be empty.
 [[nodiscard]] inline double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

@@ -17,11 +17,11 @@ class Messages {
   Messages& operator=(const Messages&) = delete;
   virtual ~Messages() = default;
 
-  /// One line about a part that is done.
+  /// Reports that a part is done, in one line.
   virtual void say(const std::string& line) const = 0;
-  /// One line that the user should know, such as rows that were left out.
+  /// Tells the user something to know, in one line, such as rows that were left out.
   virtual void note(const std::string& line) const = 0;
-  /// Damage of the input that was survived, one line each.
+  /// Reports faults of the input that the function could work around, one line each.
   virtual void warn(const std::vector<Problem>& problems) const = 0;
   /// Shows the progress of stages; returns false once the user has interrupted.
   [[nodiscard]] virtual Progress progress() = 0;

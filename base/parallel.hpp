@@ -6,9 +6,9 @@
 
 namespace roadbook {
 
-/// Runs body(i) for i in [0, count) on `num_threads` threads (0: all cores). Items are handed out
-/// in ascending order; each must write to its own place, so that the result does not depend on the
-/// number of threads. The first exception, by item number, is thrown again when all have stopped.
+/// Runs body(i) for i in [0, count) on `num_threads` threads (0: all cores). Items start in
+/// ascending order. Each must write to its own memory, so that the result does not depend on the
+/// number of threads. When all threads have stopped, the exception of the lowest item is rethrown.
 void parallel_for(std::size_t count, int num_threads, const std::function<void(std::size_t)>& body);
 
 /// The same for small items: a thread takes some hundred neighbours at a time.
@@ -21,7 +21,7 @@ void parallel_for_small(std::size_t count, int num_threads, const Body& body) {
   });
 }
 
-/// `requested`, or the number of cores where it is 0.
+/// Returns `requested`, or the number of cores if `requested` is 0.
 [[nodiscard]] int thread_count(int requested);
 
 }  // namespace roadbook

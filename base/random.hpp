@@ -5,8 +5,8 @@
 
 namespace roadbook {
 
-// Seeded random numbers that are the same on every machine: the engine and the distributions are
-// our own few lines, because the standard's distributions may differ between libraries.
+// Seeded random numbers that are the same on every machine. Engine and distributions are
+// implemented here, because the distributions of the standard library differ between libraries.
 
 /// xoshiro256** (Blackman and Vigna 2018), seeded through SplitMix64. A UniformRandomBitGenerator.
 class Random {
@@ -14,8 +14,8 @@ class Random {
   using result_type = std::uint64_t;
 
   explicit Random(std::uint64_t seed);
-  /// The stream of (seed, name, index): independent of every other, so that adding a draw in one
-  /// place changes nothing in another.
+  /// The stream of (seed, name, index). Streams are independent: a further draw from one stream
+  /// changes no other.
   Random(std::uint64_t seed, std::string_view name, std::uint64_t index = 0);
 
   static constexpr result_type min() { return 0; }

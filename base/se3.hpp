@@ -32,7 +32,7 @@ Eigen::Matrix<T, 3, 3> skew(const Eigen::Matrix<T, 3, 1>& a) {
 /// Adjoint: T * exp(xi) * T^-1 = exp(Ad_T * xi).
 [[nodiscard]] Matrix6d se3_adjoint(const Eigen::Isometry3d& T);
 
-/// T_a_c and its covariance from T_a_b and T_b_c with independent errors.
+/// Covariance of T_a_c = T_a_b * T_b_c, if the errors of T_a_b and T_b_c are independent.
 [[nodiscard]] Matrix6d compose_covariance(const Matrix6d& cov_a_b,
                                           const Eigen::Isometry3d& T_b_c,
                                           const Matrix6d& cov_b_c);

@@ -6,8 +6,8 @@
 
 namespace roadbook {
 
-/// Characters (code points) of a text in UTF-8. Empty where the text is not UTF-8: a byte out of
-/// place, a longer form than needed, a surrogate, or beyond U+10FFFF (RFC 3629).
+/// Returns the number of characters (code points) of a text in UTF-8. Empty if the text is not
+/// valid UTF-8 (RFC 3629): wrong bytes, overlong forms, surrogates, or beyond U+10FFFF.
 [[nodiscard]] std::optional<std::size_t> utf8_characters(std::string_view text);
 
 }  // namespace roadbook

@@ -25,10 +25,11 @@ class WholeFile {
   std::filesystem::path part_;  ///< keeps the extension, by which writers choose a format
 };
 
-/// Writes the text through a WholeFile.
+/// Writes the text through a WholeFile. Throws StorageError.
 void write_whole_file(const std::filesystem::path& path, const std::string& text);
 
-/// "DIR/stem_NAME.ext" of "DIR/stem.ext"; in NAME all but letters, digits, '-', '.' become '_'.
+/// Returns "DIR/stem_NAME.ext" for "DIR/stem.ext". In NAME, all characters other than letters,
+/// digits, '-' and '.' become '_'.
 [[nodiscard]] std::filesystem::path with_suffix(const std::filesystem::path& path,
                                                 const std::string& name);
 

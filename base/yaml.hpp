@@ -41,8 +41,8 @@ class YamlMap {
   /// The same from text; messages give `name` as the file.
   static YamlMap parse(const std::string& text, const std::string& name);
 
-  /// Reads `key` into `value` if it is there and good; returns whether it did. A key that is there
-  /// and wrong is a fault and leaves `value` as it was. Strings of digits in quotes are no numbers.
+  /// Reads `key` into `value` if the key exists and its value is valid; returns whether it did. An
+  /// invalid value is a fault and leaves `value` unchanged. Digits in quotes are not a number.
   bool read(std::string_view key, double& value, const Range& range = {});
   bool read(std::string_view key, int& value, const Range& range = {});
   bool read(std::string_view key, std::int64_t& value, const Range& range = {});
@@ -53,7 +53,7 @@ class YamlMap {
   bool read(std::string_view key, std::vector<std::string>& value);
   /// Lists of lists of numbers: matrices row by row, polygons.
   bool read(std::string_view key, std::vector<std::vector<double>>& value);
-  /// Empties `value` where the key is there without a value, or with `null`.
+  /// The same; sets `value` to empty if the key has no value or `null`.
   bool read(std::string_view key, std::optional<double>& value, const Range& range = {});
 
   /// `read`, and a fault where the key is absent.
@@ -71,7 +71,7 @@ class YamlMap {
   /// The list of mappings under `key`.
   [[nodiscard]] std::vector<YamlMap> maps(std::string_view key);
 
-  /// Accepts a key without looking at its value.
+  /// Accepts a key and ignores its value.
   void ignore(std::string_view key);
   [[nodiscard]] bool has(std::string_view key) const;
   /// Whether `key` is there and holds a mapping: for keys that accept several forms.
@@ -79,7 +79,7 @@ class YamlMap {
   /// All keys in file order, for mappings with free names.
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  /// Adds a fault of the caller's own finding at `key`'s line.
+  /// Adds a fault that the caller found, at the line of `key`.
   void report(std::string_view key, const std::string& got, const std::string& want);
   /// Line of `key`'s value (1-based); of the mapping itself where the key is absent.
   [[nodiscard]] std::int64_t line(std::string_view key = {}) const;
@@ -87,8 +87,8 @@ class YamlMap {
 
   /// Faults so far in the whole file.
   [[nodiscard]] const std::vector<Problem>& problems() const;
-  /// Adds unknown keys of the whole file to the faults and returns them all: for callers that
-  /// gather over several files.
+  /// Adds a fault for each unknown key of the whole file and returns all faults. For callers that
+  /// gather faults over several files.
   [[nodiscard]] std::vector<Problem> finish_problems();
   /// The same; throws BadInput if there are any.
   void finish();

@@ -21,7 +21,7 @@ namespace roadbook {
 struct YamlMap::Document {
   std::string file;
   std::vector<Problem> problems;
-  std::vector<std::shared_ptr<State>> maps;  ///< every mapping handed out, for the unknown keys
+  std::vector<std::shared_ptr<State>> maps;  ///< every mapping returned; `finish` checks their keys
 };
 
 struct YamlMap::State {
@@ -50,7 +50,7 @@ struct YamlMap::State {
 
 inline std::int64_t line_of(const YAML::Node& node) { return node.Mark().line + 1; }
 
-/// A node as an error line shows it.
+/// Text of a node for an error line.
 std::string shown(const YAML::Node& node);
 
 }  // namespace roadbook

@@ -11,31 +11,33 @@
 
 namespace roadbook {
 
-// Known effects taken out again: calibration and readings as the nominal model would have had them.
-// What `--model` does for estimation; simulation does the opposite with the same sizes.
+// Correction of known effects: the calibration and readings that the nominal model would have had.
+// `--model` does this for estimation. Simulation adds the same effects with the same sizes.
 
-/// The calibration that really holds where the effects of `sizes` are on: radii and track width
-/// corrected. Stamps move by the wheels' latency, and with all that is no image by that of the
-/// whole rig (`cam.latency`), by which images show what the other sensors have read before.
+/// Returns the wheel calibration that holds if the effects of `sizes` are on: corrected radii and
+/// track width, and a time offset corrected by the wheels' latency. The latency of the whole rig
+/// (`cam.latency`) also moves the stamps of all sensors other than cameras.
 [[nodiscard]] WheelModel corrected_wheels(const WheelModel& nominal, const EffectSizes& sizes);
+/// The same for a range sensor and for the cameras.
 [[nodiscard]] RangeModel corrected_range(const RangeModel& nominal, const EffectSizes& sizes);
 [[nodiscard]] Rig corrected_rig(const Rig& nominal, const EffectSizes& sizes);
 
-/// What wheels and steering would have read with the radii of `corrected_wheels` and nothing else
-/// wrong: eccentricity, slip under acceleration and growth with speed taken out, drifting stamps
-/// put on the cameras' clock, which both agree on at `origin_ns`. Speed and acceleration are those
-/// of the readings themselves over 0.4 s.
+/// Returns the readings that wheels and steering would have given with the radii of
+/// `corrected_wheels` and no further effect. Removes eccentricity, slip under acceleration and
+/// growth with speed. Moves stamps of a drifting clock to the cameras' clock; the clocks agree at
+/// `origin_ns`. Speed and acceleration come from the readings themselves, over 0.4 s.
 [[nodiscard]] std::vector<WheelReading> corrected_readings(const WheelModel& nominal,
                                                            const EffectSizes& sizes,
                                                            std::int64_t origin_ns,
                                                            std::vector<WheelReading> readings);
 
-/// Stamp on the cameras' clock of one from a clock that drifts (`clock.drift`).
+/// Converts a stamp of the drifting clock (`clock.drift`) to the cameras' clock. The clocks agree
+/// at `origin_ns`.
 [[nodiscard]] std::int64_t corrected_stamp(const EffectSizes& sizes,
                                            std::int64_t origin_ns,
                                            std::int64_t t_ns);
 
-/// Names in `sizes` that the functions above cannot take out of rig and wheels.
+/// Returns the names in `sizes` that the functions above cannot correct.
 [[nodiscard]] std::vector<std::string> not_corrected(const EffectSizes& sizes);
 
 }  // namespace roadbook

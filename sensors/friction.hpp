@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-// What a friction sensor reads on a known surface, imperfections included.
+// Model of a friction sensor: its reading on a known surface, with imperfections.
 
 /// Sizes of the effects "friction0.X" (units: sensors/reading_effects.cpp); all zero: the nominal
 /// sensor, which reads the mean friction of the surface under the wheels.
@@ -27,14 +27,14 @@ struct FrictionImperfections {
 
 /// Where and when a reading was taken.
 struct FrictionMoment {
-  /// Horizontal acceleration of the car over that of gravity: friction in use. Slip grows with the
-  /// share of the friction there is that is in use, so a bias relative to the friction and
-  /// proportional to that share is proportional to this.
+  /// Horizontal acceleration of the car over that of gravity: the friction in use. The slip bias is
+  /// relative to the friction and proportional to the used share of it. The product is proportional
+  /// to the friction in use.
   double in_use = 0.0;
   double speed = 0.0;            ///< [m/s]
   double elapsed_s = 0.0;        ///< since the drive began
   double above_reference = 0.0;  ///< temperature less kFrictionReference [K]
-  bool wet = false;              ///< water on the ground: dries as long as the drive lasts
+  bool wet = false;              ///< water on the ground, which dries during the drive
   bool extra = false;            ///< on the surface with the wrong class
   double place = 0.0;            ///< bias of the place, of unit standard deviation
 };
@@ -42,7 +42,7 @@ struct FrictionMoment {
 /// Temperature at which `friction0.temperature` changes nothing [degrees Celsius].
 inline constexpr double kFrictionReference = 20.0;
 
-/// Friction read where the surface's is `friction`.
+/// Returns the friction read on a surface with friction `friction`.
 template <typename T>
 T predict_friction(const FrictionImperfections<T>& off, double friction, const FrictionMoment& at) {
   T read = T(friction) + off.slip_bias * T(at.in_use) + off.speed_bias * T(at.speed) +

@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-// What a gyro reads when the car turns, imperfections included.
+// Model of a gyro: its reading in a turning car, with imperfections.
 
 /// Sizes of the effects "imu0.X" (units: sensors/effects.cpp); all zero: the nominal sensor.
 template <typename T>
@@ -19,7 +19,7 @@ struct ImuImperfections {
   return {size("gyro_bias"), size("gyro_scale"), size("latency")};
 }
 
-/// Turn rate read [rad/s] about one axis; `latency` is a shift of time and left to the caller.
+/// Returns the turn rate read [rad/s] about one axis. The caller applies `latency`.
 template <typename T>
 T predict_gyro(const ImuImperfections<T>& off, const T& turn_rate) {
   return turn_rate * (T(1.0) + off.gyro_scale) + off.gyro_bias;

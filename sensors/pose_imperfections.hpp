@@ -7,17 +7,17 @@
 
 namespace roadbook {
 
-// What a stream of planar poses (of a map, or of the reference) shows when the whole camera rig or
-// the map is not as believed.
+// Model of a stream of planar poses (from a map, or from the reference) if the mounting of the
+// camera rig or the map is wrong.
 
 /// Sizes of the effects "cam.X" and "map.X" seen in poses; all zero: true poses.
 template <typename T>
 struct PoseImperfections {
   T latency{0.0};   ///< [s]; a pose stamped t shows the vehicle at t - latency
-  T rotation{0.0};  ///< [rad]; the rig looks this far to the right of where it is believed to look
-  T position{0.0};  ///< [m]; the rig sits this far ahead of where it is believed to sit
-  T scale{0.0};     ///< map: relative, about the first pose
-  T bend{0.0};      ///< map: [1/m]; curvature, to the left, of a straight line along x
+  T rotation{0.0};  ///< [rad]; the rig looks this much to the right of its stated direction
+  T position{0.0};  ///< [m]; the rig sits this much ahead of its stated position
+  T scale{0.0};     ///< error of the map's scale, relative, about the first pose
+  T bend{0.0};      ///< [1/m]; curvature, to the left, that the map gives a straight line along x
 };
 
 template <typename T>
@@ -27,9 +27,10 @@ struct PlanarPose {
   T heading{0.0};
 };
 
-/// The pose that is read: the rig's shift moves it along the vehicle's x axis, the map is bent
-/// about `origin` and scaled, and a rig that looks too far right takes its view for the believed
-/// one: the heading comes out too far right by as much. `latency` is left to the caller.
+/// Returns the pose that is read for the true pose `vehicle`. The shift of the rig moves the pose
+/// along the vehicle's x axis. The map is bent and scaled about `origin`. A rig that looks
+/// `rotation` too far to the right gives a heading too far to the right by as much. The caller
+/// applies `latency`.
 template <typename T>
 PlanarPose<T> predict_pose(const PoseImperfections<T>& off,
                            const PlanarPose<T>& vehicle,
@@ -48,8 +49,9 @@ PlanarPose<T> predict_pose(const PoseImperfections<T>& off,
   return read;
 }
 
-/// The pose in space that is read: `predict_pose` of its planar part about the drive's first pose
-/// `T_world_first`; heights are scaled about that pose's as well, roll and pitch stay.
+/// Returns the pose in space that is read: `predict_pose` of the planar part about the drive's
+/// first pose `T_world_first`. Heights are scaled about the height of that pose; roll and pitch
+/// stay.
 [[nodiscard]] inline Eigen::Isometry3d predict_pose(const PoseImperfections<double>& off,
                                                     const Eigen::Isometry3d& T_world_vehicle,
                                                     const Eigen::Isometry3d& T_world_first) {

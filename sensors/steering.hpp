@@ -6,7 +6,7 @@
 
 namespace roadbook {
 
-// What a steering sensor reads when the car moves, imperfections included.
+// Model of a steering sensor: its reading in a moving car, with imperfections.
 
 /// Sizes of the effects "steering0.X" (units: sensors/effects.cpp); all zero: the nominal sensor.
 template <typename T>
@@ -15,7 +15,7 @@ struct SteeringImperfections {
   T ratio{0.0};       ///< relative
   T understeer{0.0};  ///< [s^2/m^2]
   T wheelbase{0.0};   ///< relative
-  T latency{0.0};     ///< [s]; beside that of the rows it stands in
+  T latency{0.0};     ///< [s]; in addition to the latency of the rows (`wheels0.latency`)
 };
 
 [[nodiscard]] inline SteeringImperfections<double> steering_imperfections(
@@ -24,9 +24,9 @@ struct SteeringImperfections {
   return {size("offset"), size("ratio"), size("understeer"), size("wheelbase"), size("latency")};
 }
 
-/// Angle read [rad] at the road wheels: that of the single-track model without side slip, grown by
-/// understeer, then the sensor's ratio and offset. Speed must not be zero; negative backwards.
-/// `latency` is a shift of time and left to the caller.
+/// Returns the angle read [rad] at the road wheels: the angle of the single-track model without
+/// side slip, with understeer, then with the sensor's ratio and offset. `speed` [m/s] must not be
+/// zero and is negative in reverse; `yaw_rate` [rad/s]. The caller applies `latency`.
 template <typename T>
 T predict_steering(double wheelbase_m,
                    const SteeringImperfections<T>& off,

@@ -7,22 +7,25 @@
 
 namespace roadbook {
 
-/// Sizes of the effects "STREAM.X" that concern a stream's noise; all zero: white and normal.
-/// What wheels scatter on their way grows with speed and turn as their readings' noise does.
+/// Sizes of the effects "STREAM.X" of a stream's noise; all zero: white and normal. For wheels, the
+/// slip noise along the way grows with speed and turn rate as the noise of the readings does.
 struct NoiseImperfections {
   double outliers = 0.0;           ///< share of readings whose noise is ten times as large
-  double variance_by_speed = 0.0;  ///< of the log variance, per m/s above 2 m/s [s/m]
-  double variance_by_turn = 0.0;   ///< the same per rad/s of turn rate above 0.2 rad/s [s/rad]
-  double correlation = 0.0;        ///< with the reading before
+  double variance_by_speed = 0.0;  ///< log variance, per m/s of speed above 2 m/s [s/m]
+  double variance_by_turn = 0.0;   ///< log variance, per rad/s of turn rate above 0.2 rad/s [s/rad]
+  double correlation = 0.0;        ///< with the previous reading
 };
+/// Reads the sizes for `stream` ("imu0") from `sizes`.
 [[nodiscard]] NoiseImperfections noise_imperfections(const EffectSizes& sizes,
                                                      const std::string& stream);
 
-/// Standard deviation of noise over that at 2 m/s and 0.2 rad/s.
+/// Ratio of the noise's standard deviation at `speed` [m/s] and `yaw_rate` [rad/s] to the standard
+/// deviation at 2 m/s and 0.2 rad/s.
 [[nodiscard]] double noise_growth(const NoiseImperfections& off, double speed, double yaw_rate);
 
-/// Noise of one channel's readings, one after another, of unit standard deviation at 2 m/s and
-/// 0.2 rad/s without outliers. With nothing off, each draws one normal from `random`.
+/// Draws the noise of one channel's readings in their order. Without outliers, its standard
+/// deviation at 2 m/s and 0.2 rad/s is 1. If all effects are off, each call draws one normal from
+/// `random`.
 class StreamNoise {
  public:
   StreamNoise(const EffectSizes& sizes, const std::string& stream)

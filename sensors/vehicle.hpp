@@ -8,11 +8,11 @@
 
 namespace roadbook {
 
-// The measures of the vehicle that carries the sensors, and the space that its body takes.
+// The measures of the vehicle that carries the sensors, and the space that its body fills.
 //
 // Vehicle frame: on the ground under the middle of the rear axle, x forward, y left, z up.
 
-/// What `vehicle.yaml` says (docs/reference/drive_format.md). An empty measure is not known.
+/// The content of `vehicle.yaml` (docs/reference/drive_format.md). An empty measure is unknown.
 struct VehicleMeasures {
   std::optional<double> length_m;         ///< bumper to bumper
   std::optional<double> width_m;          ///< of the body, without mirrors
@@ -24,9 +24,9 @@ struct VehicleMeasures {
   bool operator==(const VehicleMeasures&) const = default;
 
   [[nodiscard]] bool is_empty() const { return *this == VehicleMeasures{}; }
-  /// From the front axle forward to the front bumper; empty where a measure for it is not known.
+  /// From the front axle forward to the front bumper; empty if a measure for it is unknown.
   [[nodiscard]] std::optional<double> front_overhang_m() const;
-  /// The width, or the track width and 0.25 m: what bodies of cars add to it.
+  /// The width, or else the track width plus 0.25 m, which bodies of cars usually add.
   [[nodiscard]] std::optional<double> width_or_estimate_m() const;
   /// The box that the body fills. A measure that is not known is estimated:
   ///  - width: `width_or_estimate_m`;
@@ -51,20 +51,20 @@ enum class VehicleSource {
 /// The inverse; empty for another name.
 [[nodiscard]] std::optional<VehicleSource> vehicle_source_from(std::string_view name);
 
-/// The body of a vehicle, or, where its measures give none, what its cameras enclose: the rectangle
-/// between them, seen from above, as high as the lowest. It lies within the body of a car that
-/// carries cameras round it, and has no area for a single camera. Empty without cameras.
+/// Returns the body of a vehicle. If its measures give none, returns the rectangle between its
+/// cameras, seen from above, as high as the lowest camera. This rectangle lies within the body of a
+/// car with cameras on all sides, and has no area for a single camera. Empty without cameras.
 [[nodiscard]] Eigen::AlignedBox3d body_or_outline(const VehicleMeasures& vehicle, const Rig& rig);
 
-/// Whether a place lies within the body's outline, seen from above. Places on the border are
-/// outside: a camera on the surface of the body looks away from it.
+/// Whether a point lies within the body's outline, seen from above. Points on the border are
+/// outside, because a camera on the surface of the body looks away from it.
 [[nodiscard]] bool is_above_body(const Eigen::AlignedBox3d& body, const Eigen::Vector3d& p_vehicle);
 
-/// Whether the body hides `p_vehicle` from a camera at `centre_vehicle`.
+/// Whether the body hides `p_vehicle` from a camera at `centre_vehicle` (vehicle frame [m]).
 ///
-/// A place on the ground within the body's outline is always hidden. A camera within the outline
-/// (on the roof, behind the windscreen) sees past the body: a box says nothing of where its bonnet
-/// ends, so what such a camera sees of the body is measured in its images.
+/// A point on the ground within the body's outline is always hidden. A camera within the outline
+/// (on the roof, behind the windscreen) sees past the body, because a box does not tell where the
+/// bonnet ends. `find_still_parts` finds the body in the images of such a camera.
 [[nodiscard]] bool is_hidden_by_body(const Eigen::AlignedBox3d& body,
                                      const Eigen::Vector3d& centre_vehicle,
                                      const Eigen::Vector3d& p_vehicle);

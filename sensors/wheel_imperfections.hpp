@@ -8,7 +8,8 @@
 
 namespace roadbook {
 
-// Turns of the wheels when the car moves, imperfections included: the inverse of wheel_increment.
+// Model of the wheel readings in a moving car, with imperfections: the inverse of
+// `wheel_increment`.
 
 /// Sizes of the effects "wheels0.X" (units: sensors/effects.cpp); all zero: the nominal wheels.
 template <typename T>
@@ -46,10 +47,10 @@ struct TrueMotion {
   bool wet = false;        ///< on wet ground
 };
 
-/// Increments of the two wheel-angle readings [rad], left first. Slip and wet ground turn the
-/// wheels more than they roll. Eccentricity adds size * sin(phase) to the angle that is read. The
+/// Returns the increments of the two wheel-angle readings [rad], left first. Slip and wet ground
+/// turn the wheels more than they roll. Eccentricity adds size * sin(phase) to the angle read. The
 /// wheels of a locked axle (1: a spool, no differential) turn equally in bends and slip instead.
-/// `latency` is a shift of time and left to the caller.
+/// The caller applies `latency`.
 template <typename T>
 Eigen::Matrix<T, 2, 1> predict_wheel_turns(const WheelModel& model,
                                            const WheelImperfections<T>& off,

@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-// Wheel odometry: the planar motion of a car from its wheels, with covariance.
+// Wheel odometry: the planar motion of a car from its wheel readings, with covariance.
 
 /// Calibration and noise of the wheels (sensor.yaml of wheels0).
 struct WheelModel {
@@ -29,8 +29,8 @@ struct WheelModel {
   double sigma_angle_rad = 0.001;           ///< of one wheel-angle reading
 };
 
-/// One row: cumulative wheel angles [rad] of the rear axle (speeds and ticks are converted when
-/// read), and the steering angle [rad] at the road wheels where it is known.
+/// One reading: cumulative wheel angles [rad] of the rear axle, and the steering angle [rad] at the
+/// road wheels if it is known. The reader of the table converts speeds and ticks to angles.
 struct WheelReading {
   std::int64_t t_ns = 0;
   double left_angle_rad = 0.0;
@@ -46,8 +46,9 @@ struct PlanarMotion {
   bool reversing = false;   ///< net motion backwards
 };
 
-/// Distance driven by the rear axle's middle and heading change, from the wheels' rotations
-/// [rad]. Templated on the scalar: simulation, estimation and diagnosis use this very function.
+/// Returns the distance [m] that the middle of the rear axle drove and the change of heading [rad],
+/// from the rotations of the wheels [rad]. This is where a wheel reading becomes a motion:
+/// simulation, estimation and diagnosis all use it (templated on the scalar).
 template <typename T>
 Eigen::Matrix<T, 2, 1> wheel_increment(const T& left_turn_rad,
                                        const T& right_turn_rad,
@@ -59,13 +60,14 @@ Eigen::Matrix<T, 2, 1> wheel_increment(const T& left_turn_rad,
   return {(left + right) / T(2), (right - left) / track_width_m};
 }
 
-/// Integrates readings (ascending in time, from a stream) and answers for any two times.
+/// Integrates readings, which ascend in time, and returns the motion between any two times.
 class WheelOdometry {
  public:
   WheelOdometry(const WheelModel& model, std::vector<WheelReading> readings);
 
-  /// Motion from t_a to t_b (t_a <= t_b, wheel clock offset applied), readings interpolated
-  /// linearly; empty where the stream does not reach or has a gap longer than `max_gap_ns`.
+  /// Returns the motion from t_a to t_b (t_a <= t_b), with the wheels' time offset applied.
+  /// Readings are interpolated linearly. Empty if the readings do not cover both times, or have a
+  /// gap longer than `max_gap_ns` between them.
   [[nodiscard]] std::optional<PlanarMotion> between(std::int64_t t_a_ns,
                                                     std::int64_t t_b_ns,
                                                     std::int64_t max_gap_ns = 500'000'000) const;

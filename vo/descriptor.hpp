@@ -13,11 +13,11 @@ using Descriptor = std::array<std::uint8_t, 64>;
 /// Number of differing bits, 0..512.
 [[nodiscard]] int hamming(const Descriptor& a, const Descriptor& b);
 
-/// The nearest of many descriptors and how near the runner-up comes.
+/// The nearest of many descriptors, and the distance of the second nearest.
 struct NearestDescriptor {
-  int index = -1;
-  int distance = std::numeric_limits<int>::max();
-  int second = std::numeric_limits<int>::max();
+  int index = -1;                                  ///< of the nearest; -1: there are none
+  int distance = std::numeric_limits<int>::max();  ///< of the nearest [differing bits]
+  int second = std::numeric_limits<int>::max();    ///< of the second nearest [differing bits]
 };
 [[nodiscard]] NearestDescriptor nearest_descriptor(const Descriptor& query,
                                                    std::span<const Descriptor> descriptors);

@@ -7,7 +7,8 @@
 
 namespace roadbook {
 
-/// Buckets of pixels: visits those near a place without looking at all of them.
+/// A grid over the pixels of features, which finds the features near a pixel without visiting all.
+/// Keeps a reference to `pixels`, which must outlive it.
 class FeatureGrid {
  public:
   FeatureGrid(const std::vector<Eigen::Vector2f>& pixels, int width, int height)
@@ -21,7 +22,8 @@ class FeatureGrid {
       items_[static_cast<std::size_t>(counts[cell_of(pixels[i])]++)] = static_cast<int>(i);
   }
 
-  /// Calls visit(index) for every pixel within the box of half width `radius` around `centre`.
+  /// Calls visit(index) for every feature in the square of half width `radius` [px] around
+  /// `centre`.
   template <typename Visit>
   void for_each_near(const Eigen::Vector2d& centre, double radius, const Visit& visit) const {
     const int c0 = clamp_cell(centre.x() - radius, columns_);

@@ -12,8 +12,8 @@ namespace roadbook {
 
 struct FeatureOptions {
   int max_features = 320;   ///< per image
-  int cell_px = 32;         ///< evenness: the image is cut into cells of this size,
-  int max_per_cell = 3;     ///< at most this number of the strongest stay in each cell
+  int cell_px = 32;         ///< side of the cells that spread the features over the image
+  int max_per_cell = 3;     ///< only this number of the strongest features stays in each cell
   int threshold = 22;       ///< AGAST corner threshold [grey levels]
   int low_threshold = 9;    ///< tried where the first one finds too few (dim or plain images)
   double border_px = 12.0;  ///< distance kept from the image border
@@ -29,8 +29,9 @@ struct Features {
   [[nodiscard]] std::size_t size() const { return pixels.size(); }
 };
 
-/// Detects and describes. `mask` (same size, 8 bit; empty: none) is 0 where no feature may lie,
-/// such as the own car. Deterministic; safe to call concurrently.
+/// Detects features in an 8-bit grey image of half size and describes them. `mask` (same size, 8
+/// bit; empty: none) is 0 where no feature may lie, such as the own car. Throws InvalidOption.
+/// Deterministic; safe to call concurrently.
 [[nodiscard]] Features detect_features(const cv::Mat& half_image,
                                        const cv::Mat& mask,
                                        const FeatureOptions& options = {});

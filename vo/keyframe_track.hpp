@@ -11,9 +11,9 @@
 
 namespace roadbook {
 
-// What visual odometry hands on: keyframes with their features, and the tracks through them.
+// The result of visual odometry: keyframes with their features, and the tracks through them.
 
-/// A keyframe as visual odometry leaves it.
+/// A keyframe as visual odometry estimated it, before loop closures and bundle adjustment.
 struct VoKeyframe {
   std::size_t frame = 0;  ///< index in the drive
   std::int64_t t_ns = 0;
@@ -27,19 +27,21 @@ struct VoKeyframe {
   int inliers = 0;           ///< triangulated features that agreed with the pose
   double travelled_m = 0.0;  ///< since the drive's start, in the odometry's scale
   bool reversing = false;
-  bool after_gap = false;  ///< nothing is known of the motion from the previous keyframe
+  bool after_gap = false;  ///< the motion from the previous keyframe is unknown
 };
 
 struct TrackObservation {
-  int keyframe = 0;
-  int feature = 0;
+  int keyframe = 0;  ///< index in VoResult::keyframes
+  int feature = 0;   ///< index in the features of the track's camera
 };
 
 /// The same corner seen by one camera in at least two successive keyframes.
 struct Track {
   int camera = 0;
   std::vector<TrackObservation> observations;
-  std::optional<Eigen::Vector3d> p_odom;  ///< triangulated with the odometry's poses
+  /// Position in the odometry frame, triangulated with the odometry's poses; empty without enough
+  /// parallax.
+  std::optional<Eigen::Vector3d> p_odom;
 };
 
 struct VoResult {

@@ -15,28 +15,28 @@
 
 namespace roadbook {
 
-// What visual odometry knows between frames. Private to vo/: its parts share it.
+// The state of visual odometry between frames. Private to vo/: the odometry_*.cpp files share it.
 
-// Searches, in pixels of the half-size image.
-constexpr double kFirstRadiusPx = 20.0;     // without knowledge of the motion but constancy
-constexpr double kPredictedRadiusPx = 6.0;  // where the wheels predict the motion
+// Radii of the searches, in pixels of the half-size image.
+constexpr double kFirstRadiusPx = 20.0;     // if only a constant velocity predicts the motion
+constexpr double kPredictedRadiusPx = 6.0;  // if the wheels predict the motion
 constexpr double kRefinedRadiusPx = 3.5;    // second search, with the pose of the first
-constexpr std::size_t kFewestPairs = 30;    // corners found again, to tell a first motion
+constexpr std::size_t kFewestPairs = 30;    // matched corners that a first motion needs
 
 [[nodiscard]] std::vector<FeatureGrid> make_grids(const std::vector<Features>& features,
                                                   const Rig& rig);
 
 struct VisualOdometry::State {
   struct Matches {
-    std::vector<std::vector<int>> tracks;    // per camera: active tracks searched for
-    std::vector<std::vector<int>> features;  // their feature, or -1
+    std::vector<std::vector<int>> tracks;    // per camera: indices of the tracks searched for
+    std::vector<std::vector<int>> features;  // per camera and track: index of its feature, or -1
   };
 
   Rig rig;
   VoOptions options;
   VoResult result;
   double tolerance_rad = 0.0;  // the inlier threshold as an angle
-  // Per camera: tracks that may be found again.
+  // Per camera: tracks that may continue in the next frame.
   std::vector<std::vector<int>> active;
   std::size_t newest_tracks = 0;  // first of those begun in the last keyframe
   // Constant-velocity prediction where there are no wheels.
@@ -44,7 +44,8 @@ struct VisualOdometry::State {
   std::int64_t velocity_t_ns = 0;
   std::optional<VoFrame> reference;  // first view, while no motion is known
   bool has_motion = false;
-  // Without wheels: the newest frame short of the next keyframe, until the one behind it is known.
+  // Without wheels: the newest frame short of the next keyframe's position. It waits for the first
+  // frame beyond that position; the nearer of the two becomes the keyframe.
   struct HeldFrame {
     VoFrame frame;
     Matches matches;
@@ -52,7 +53,7 @@ struct VisualOdometry::State {
     double distance_m = 0.0;
     double turn_rad = 0.0;
   };
-  KeyframeSpacing spacing;  // nothing is carried over: the scale is not known well enough
+  KeyframeSpacing spacing;  // without wheels it carries no distance over, as the scale is uncertain
   std::optional<HeldFrame> held;
 
   State(Rig half_rig, const VoOptions& vo_options);
@@ -61,8 +62,8 @@ struct VisualOdometry::State {
 
   Eigen::Vector3d bearing_of(int camera, const TrackObservation& o) const;
 
-  // Corners found again (odometry_search.cpp).
-  enum class Searched { kKnownPlaces, kAll };
+  // Search for the corners of tracks in a new frame (odometry_search.cpp).
+  enum class Searched { kKnownPlaces, kAll };  // only triangulated tracks, or all
   Matches search(const VoFrame& frame,
                  const std::vector<FeatureGrid>& grids,
                  const Eigen::Isometry3d& T_odom_new,

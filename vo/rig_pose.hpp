@@ -11,18 +11,19 @@
 
 namespace roadbook {
 
-// Pose of the vehicle from points of known place seen by any of its cameras.
+// Pose of the vehicle from points with known positions that any of its cameras observed.
 
-/// A point in the world (or in the frame of another vehicle pose) and where a camera sees it.
+/// A point in the world (or in the frame of another vehicle pose), and the pixel that shows it.
 struct RigObservation {
-  int camera = 0;
-  Eigen::Vector2d pixel;  ///< of the cameras of the rig passed along
+  int camera = 0;         ///< index in the rig
+  Eigen::Vector2d pixel;  ///< in the image size of the rig's cameras
   Eigen::Vector3d p_world;
 };
 
+/// A Gaussian prior of the pose.
 struct RigPosePrior {
   Eigen::Isometry3d T_world_vehicle;
-  Matrix6d information;
+  Matrix6d information;  ///< of the right perturbation
 };
 
 struct RigPose {
@@ -40,8 +41,8 @@ struct RigPoseOptions {
   double ransac_inlier_rad = 0.015;  ///< angle between ray and point
 };
 
-/// Gauss-Newton from `initial` on robust (Cauchy) reprojection errors, plus a prior where there is
-/// one. Empty where the system is singular.
+/// Minimises the robust (Cauchy) reprojection errors by Gauss-Newton from `initial`, together with
+/// the prior if one is given. Empty if the normal equations are singular.
 [[nodiscard]] std::optional<RigPose> refine_rig_pose(const Rig& rig,
                                                      std::span<const RigObservation> observations,
                                                      const Eigen::Isometry3d& initial,
@@ -49,8 +50,8 @@ struct RigPoseOptions {
                                                      const RigPoseOptions& options = {});
 
 /// RANSAC with the generalised three-point solver over the whole rig (OpenGV GP3P; P3P by Kneip
-/// for one camera), then `refine_rig_pose` on its inliers. Empty where nothing agrees.
-/// Deterministic: fixed seed.
+/// for one camera), then `refine_rig_pose` on its inliers. Empty if no pose has enough inliers.
+/// Deterministic: the seed is fixed.
 [[nodiscard]] std::optional<RigPose> find_rig_pose(const Rig& rig,
                                                    std::span<const RigObservation> observations,
                                                    const RigPoseOptions& options = {});

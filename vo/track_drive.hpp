@@ -22,9 +22,9 @@ struct TrackDriveOptions {
 /// ahead of the tracking; only the features stay in memory.
 ///
 /// With wheels, frames nearer to the last keyframe than the spacing are not decoded, and a standing
-/// car adds no keyframes. `masks` of the half-size images, as in `OwnCar`: no features are detected
-/// on the own car. The result does not depend on the number of threads. Throws BadInput for a drive
-/// without cameras, Interrupted when `progress` asks for it.
+/// car adds no keyframes. `masks`: one for each camera, of the half-size images, as in `OwnCar`; no
+/// features are detected on the own car. The result does not depend on the number of threads.
+/// Throws BadInput for a drive without cameras, Interrupted if `progress` returns false.
 [[nodiscard]] VoResult track_drive(const Drive& drive,
                                    const std::vector<cv::Mat>& masks,
                                    const TrackDriveOptions& options,

@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-// Finds a corner again in the next image, near the place where the motion predicts it.
+// Matching of corners with the features of the next image, near the pixel that the motion predicts.
 
 struct MatchOptions {
   int max_hamming = 110;    ///< of 512 bits
@@ -26,10 +26,11 @@ struct MatchQuery {
   const Descriptor* descriptor = nullptr;
 };
 
-/// Searches one camera's new image for `queries`; the vehicle moved by T_new_old. A corner of
-/// unknown depth is searched for along its epipolar curve, which ends where the ray would pass
-/// below the ground. Each feature is given to at most one query: the one nearest in descriptor.
-/// Result: per query the index of the feature, or -1.
+/// Searches one camera's new image for `queries`, after the vehicle moved by T_new_old. Searches
+/// within `radius_px` of the predicted pixel. A corner of unknown depth is searched for along its
+/// epipolar curve, which ends where the ray would pass below the ground. Each feature goes to at
+/// most one query: the one with the nearest descriptor. Returns the index of the feature for each
+/// query, or -1.
 [[nodiscard]] std::vector<int> match_queries(const MountedCamera& mounted,
                                              const Eigen::Isometry3d& T_new_old,
                                              const std::vector<MatchQuery>& queries,
@@ -38,7 +39,7 @@ struct MatchQuery {
                                              double radius_px,
                                              const MatchOptions& options = {});
 
-/// The same without any prediction: by place in the earlier image within `radius_px`.
+/// The same without a prediction: searches within `radius_px` of the pixel in the earlier image.
 [[nodiscard]] std::vector<int> match_near(const std::vector<MatchQuery>& queries,
                                           const Features& features,
                                           const FeatureGrid& grid,

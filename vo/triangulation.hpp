@@ -18,9 +18,9 @@ struct TriangulatedPoint {
   double max_error_rad = 0.0;  ///< largest angle between a ray and the direction to the point
 };
 
-/// Point nearest to all rays in angle: linear least squares, then Gauss-Newton on the angles.
-///
-/// Empty with fewer than two rays, for (nearly) parallel rays, or where the point lies behind one.
+/// Returns the point nearest to all rays in angle: linear least squares, then Gauss-Newton on the
+/// angles. Empty with fewer than two rays, if no two rays differ by `min_parallax_rad`, or if the
+/// point lies behind a ray's origin.
 [[nodiscard]] std::optional<TriangulatedPoint> triangulate(std::span<const Ray> rays,
                                                            double min_parallax_rad);
 
