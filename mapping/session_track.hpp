@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-/// Where a session's vehicle was, from its keyframes. Refers to the map.
+/// The poses of a session's vehicle over time, from its keyframes. Keeps a reference to the map.
 class SessionTrack {
  public:
   SessionTrack(const Map& map, int session);
@@ -18,9 +18,8 @@ class SessionTrack {
   [[nodiscard]] const std::vector<std::int64_t>& stamps() const { return t_ns_; }
   /// Index in the map of the keyframe at `stamps()[i]`.
   [[nodiscard]] int keyframe(std::size_t i) const { return keyframes_[i]; }
-  /// Returns the vehicle pose at a stamp, interpolated in time between the keyframes before and
-  /// after (rotation by slerp). Empty before the first and after the last keyframe, over a gap, and
-  /// between keyframes more than 3 m apart.
+  /// T_map_vehicle at `t_ns`, interpolated in time between the keyframes before and after. Empty
+  /// outside the session, or if the motion between these keyframes is unknown.
   [[nodiscard]] std::optional<Eigen::Isometry3d> at(std::int64_t t_ns) const;
 
  private:
@@ -29,13 +28,17 @@ class SessionTrack {
   std::vector<int> keyframes_;
 };
 
-/// A vehicle pose and how well it is known.
+/// A vehicle pose with its covariance.
 struct TrackPose {
   Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
   Matrix6d covariance = Matrix6d::Zero();  ///< right perturbation; gauge: the first keyframe fixed
 };
 
-/// Returns the vehicle pose of a session at one stamp, with its covariance.
+/// Returns the pose of a session's vehicle at one stamp. At a keyframe it is the keyframe's pose.
+/// Between two keyframes it is `SessionTrack::at`, with a covariance that grows by the possible
+/// change of speed between them. Just behind the last keyframe (a drive ends before the next one is
+/// due) it is half a step further, with a standard deviation of half a step. Empty before the
+/// session, beyond its end, and in a gap.
 ///
 /// - At a keyframe: the pose of the keyframe.
 /// - Between two keyframes: the pose of `SessionTrack::at`. The covariance interpolates those of
@@ -55,8 +58,8 @@ struct TrackPose {
 /// Takes time logarithmic in the number of keyframes.
 [[nodiscard]] std::optional<TrackPose> track_pose(const Map& map, int session, std::int64_t t_ns);
 
-/// Returns the covariance of a point's x and y in the map [m^2] that results from the covariance of
-/// the vehicle pose. `p` is the point in the vehicle frame [m].
+/// Covariance [m^2] of x and y in the map of point `p` (vehicle frame [m]) that follows from the
+/// covariance of the vehicle pose.
 [[nodiscard]] Eigen::Matrix2d covariance_of_point(const TrackPose& vehicle,
                                                   const Eigen::Vector3d& p);
 

@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-// Comparing a trajectory with a reference: association by time, alignment, absolute error.
+// Comparison of a trajectory with a reference: association by time, alignment, absolute error.
 
 /// p_a = scale * R * p_b + t.
 struct Similarity {
@@ -24,8 +24,8 @@ struct Similarity {
   }
 };
 
-/// Least-squares alignment of `b` to `a`, point by point (Umeyama, PAMI 1991, eqs. 40-42); without
-/// scale the rigid one. Sequences of equal length; an empty one gives the identity.
+/// Least-squares alignment of `b` to `a`, point by point (Umeyama, PAMI 1991, eqs. 40-42); rigid if
+/// `with_scale` is false. Sequences of equal length; empty ones give the identity.
 [[nodiscard]] Similarity align(std::span<const Eigen::Vector3d> a,
                                std::span<const Eigen::Vector3d> b,
                                bool with_scale);
@@ -39,12 +39,14 @@ struct TrajectoryError {
   double max_m = 0.0;
   Similarity T_reference_estimate;
 };
+/// Aligns `estimate` to `reference` (positions [m], pairs in order) and returns the distances.
 [[nodiscard]] TrajectoryError trajectory_error(std::span<const Eigen::Vector3d> reference,
                                                std::span<const Eigen::Vector3d> estimate,
                                                bool with_scale);
 
-/// Pairs (index in a, index in b) of stamps [ns] at most `tolerance_ns` apart: for each of `a` the
-/// nearest of `b`, each of `b` at most once (the nearer wins, then the earlier). Both ascending.
+/// Returns pairs (index in a, index in b) of stamps [ns] at most `tolerance_ns` apart. Each stamp
+/// of `a` gets the nearest of `b`. Each stamp of `b` is used at most once; the nearer stamp of `a`
+/// wins, then the earlier. Both inputs ascend.
 [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> associate_stamps(
     std::span<const std::int64_t> a_ns,
     std::span<const std::int64_t> b_ns,

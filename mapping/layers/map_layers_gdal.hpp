@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// Collects what GDAL complains about while it lives, on this thread, instead of printing it; and
-/// sets the options under which GDAL writes the same bytes for the same content.
+/// While it lives, collects the errors of GDAL on this thread instead of printing them. Also sets
+/// the options with which GDAL writes the same bytes for the same content.
 class GdalScope {
  public:
   /// `content_time`: date that GDAL writes (utc_text).

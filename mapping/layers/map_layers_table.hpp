@@ -16,8 +16,8 @@ void replace_plain_table(const SqlDatabase& database, const PlainTable& table);
 /// Throws BadInput where there is no such table.
 [[nodiscard]] PlainTable read_plain_table(const SqlDatabase& database, const std::string& name);
 
-/// Copies tables of a map into a file that is to take its place, those that it has. Throws BadInput
-/// for a map that cannot be read.
+/// Copies the tables `names`, as far as map `from` has them, into file `to`, which is to replace
+/// the map. Throws BadInput for a map that cannot be read.
 void carry_tables(const std::filesystem::path& from,
                   const std::filesystem::path& to,
                   const std::vector<std::string>& names);

@@ -13,8 +13,8 @@ void write_vector_layer(const GdalScope& scope, GDALDataset& dataset, const Vect
 /// Throws BadInput for a geometry or field type that roadbook does not write.
 [[nodiscard]] VectorLayer read_vector_layer(GDALDataset& dataset, const std::string& name);
 
-/// Gives all layers the definition of the map frame that roadbook writes today. Files of earlier
-/// versions hold two, and GIS programs refuse to combine layers of the one and of the other.
+/// Gives all layers the same definition of the map frame. Files of earlier versions hold two
+/// definitions, and GIS programs refuse to combine layers of different definitions.
 void unite_map_frames(const SqlDatabase& database);
 
 /// Throws InvalidOption for anything but letters, digits and underscores, letter first.

@@ -7,35 +7,38 @@
 
 namespace roadbook {
 
-/// One thing, seen at one place by a session and at another by the others.
+/// A cross-session match ("twin"): a corner that one session and the other sessions of a map both
+/// triangulated. A moved object gives a shift between the two positions.
 struct LandmarkTwin {
-  Eigen::Vector3d then = Eigen::Vector3d::Zero();   ///< by the other sessions, map frame [m]
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< of where this session sees it [m]
-  double sigma_m = 0.0;                             ///< of the shift along the rays, by parallax
-  int landmark = 0;                                 ///< of the map, that the others saw
-  int again = 0;  ///< that the session sees; the same where it was joined
+  Eigen::Vector3d then = Eigen::Vector3d::Zero();   ///< position by the other sessions [m, map]
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< position by this session minus `then` [m]
+  double sigma_m = 0.0;  ///< standard deviation of the shift along the rays, from the parallax
+  int landmark = 0;      ///< index of the landmark that the other sessions observed
+  int again = 0;         ///< index of the landmark that this session observed; may be the same
 };
 
 struct LandmarkTwinOptions {
-  double radius_m = 1.2;     ///< searched about a landmark that was not joined
-  int max_hamming = 120;     ///< of 512 bits
-  double max_ratio = 0.8;    ///< of the distance to the second nearest
-  double max_sigma_m = 0.1;  ///< of a twin
-  double align_m = 8.0;      ///< whose twins tell how the session's poses lie here
-  double static_m = 0.15;    ///< shifts up to this do
-  std::size_t fewest = 10;   ///< that do so
-  bool aligned = true;       ///< false: shifts as they are, errors of poses included
+  double radius_m = 1.2;     ///< searched around a landmark that the map did not join
+  int max_hamming = 120;     ///< largest distance of descriptors, of 512 bits
+  double max_ratio = 0.8;    ///< nearest over second-nearest descriptor distance
+  double max_sigma_m = 0.1;  ///< twins with a larger `sigma_m` are left out
+  double align_m = 8.0;      ///< radius of the twins whose median shift is subtracted
+  double static_m = 0.15;    ///< only shifts up to this count for the median
+  std::size_t fewest = 10;   ///< twins that the median needs; a twin with fewer is left out
+  bool aligned = true;       ///< false: does not subtract the median
 };
 
-/// Landmarks of `session` and of the others that show the same thing: joined ones by the rays of
-/// either side, the rest by descriptors that are each other's nearest. Each shift is
-/// relative to the median shift of the twins around it: an error of the poses moves all of these
-/// twins by the same vector. Deterministic.
+/// Finds the cross-session matches of `session` with all other sessions. A landmark that both sides
+/// observed is triangulated from the rays of each side. Other landmarks match if their descriptors
+/// are each other's nearest within `radius_m`. From each shift the median shift of the twins around
+/// it is subtracted, because an error of the poses moves all of these twins by the same vector.
+/// Deterministic.
 [[nodiscard]] std::vector<LandmarkTwin> landmark_twins(const Map& map,
                                                        int session,
                                                        const LandmarkTwinOptions& options = {});
 
-/// Of twins as they are (`aligned` false) those within `max_sigma_m`, aligned.
+/// Leaves out twins above `max_sigma_m` and subtracts the median shift. `twins`: a result of
+/// `landmark_twins` with `aligned` false.
 [[nodiscard]] std::vector<LandmarkTwin> aligned_twins(std::vector<LandmarkTwin> twins,
                                                       const LandmarkTwinOptions& options = {});
 

@@ -7,16 +7,16 @@
 
 namespace roadbook {
 
-// A map that does not change, and a later drive that is localised in it.
+// Localisation of a later drive in a map that does not change ("frozen map").
 
 struct FrozenMapOptions {
-  int max_hamming = 120;       ///< of 512 bits, between landmarks of the two maps
-  double max_ratio = 0.8;      ///< of the distance to the second nearest
-  std::size_t queries = 3000;  ///< landmarks of the drive that are looked for in the map
-  double near_m = 0.6;         ///< how far pairs may be off that agree with one rigid motion
-  double far_m = 3.0;          ///< how far where the frozen map is scaled or bent
+  int max_hamming = 120;       ///< largest distance of descriptors of the two maps, of 512 bits
+  double max_ratio = 0.8;      ///< nearest over second-nearest descriptor distance
+  std::size_t queries = 3000;  ///< landmarks of the drive that are searched for in the map
+  double near_m = 0.6;         ///< largest error of a pair that agrees with one rigid motion
+  double far_m = 3.0;          ///< the same if the frozen map is scaled or bent
   std::size_t fewest = 20;     ///< pairs that must agree
-  double local_m = 8.0;        ///< landmarks so near to a pose tell how it lies in the map
+  double local_m = 8.0;        ///< radius of the landmarks around a pose that move the pose
   int rounds = 2;              ///< of finding pairs and moving poses
 };
 
@@ -25,9 +25,10 @@ struct LocalisedDrive {
   int session = 0;  ///< of the drive
 };
 
-/// The drive of `own` (the map made of it alone) localised in `frozen`: each of its poses moves
-/// with the landmarks about it to where the frozen map has the same ones; landmarks of neither are
-/// joined. Nothing where the drive is not found in the map. Deterministic.
+/// Localises a drive in the map `frozen`. `own` is the map made from this drive alone. Each pose of
+/// the drive moves with the landmarks around it to the positions of the same landmarks in `frozen`.
+/// Landmarks of the two maps are not joined. Empty if the drive is not found in the map.
+/// Deterministic.
 [[nodiscard]] std::optional<LocalisedDrive> localise_in(const Map& frozen,
                                                         const Map& own,
                                                         const FrozenMapOptions& options = {});

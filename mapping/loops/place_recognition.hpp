@@ -8,7 +8,8 @@
 
 namespace roadbook {
 
-// Which earlier keyframes look like this one: bags of binary words with tf-idf weights.
+// Place recognition: finds earlier keyframes with similar images, by bags of binary words with
+// tf-idf weights.
 
 struct PlaceCandidate {
   int keyframe = 0;
@@ -17,11 +18,11 @@ struct PlaceCandidate {
 
 class PlaceIndex {
  public:
-  /// Words of all features of all cameras of every keyframe. Deterministic.
+  /// Indexes the words of all features of all cameras of every keyframe. Deterministic.
   PlaceIndex(const std::vector<VoKeyframe>& keyframes, int num_threads);
 
-  /// Best earlier keyframes (index < query) that `allowed` lets pass, best first; of several
-  /// within `suppress` indices of each other only the best.
+  /// Returns up to `count` earlier keyframes (index < query) for which `allowed` is true, best
+  /// first. Of several keyframes within `suppress` indices of each other it returns only the best.
   [[nodiscard]] std::vector<PlaceCandidate> similar(int query,
                                                     const std::function<bool(int)>& allowed,
                                                     std::size_t count,

@@ -8,19 +8,19 @@
 
 namespace roadbook {
 
-// A tree of binary words (Galvez-Lopez and Tardos 2012), grown on the descriptors of the drives
-// themselves by k-majority clustering: it needs no file and fits the place.
+// A tree of binary words (Galvez-Lopez and Tardos 2012). It is trained on the descriptors of the
+// drives themselves by k-majority clustering, so it needs no file and fits the place.
 
 struct VocabularyOptions {
-  int branching = 10;
-  int depth = 4;
-  std::size_t max_training = 60'000;  ///< descriptors used for growing, evenly picked
+  int branching = 10;                 ///< children of a node
+  int depth = 4;                      ///< levels below the root
+  std::size_t max_training = 60'000;  ///< descriptors used for training, evenly chosen
   int rounds = 6;                     ///< of k-majority at each node
 };
 
 class Vocabulary {
  public:
-  /// Grows the tree. Deterministic.
+  /// Trains the tree. Deterministic.
   Vocabulary(std::span<const Descriptor> descriptors, const VocabularyOptions& options = {});
 
   /// Leaf of a descriptor: 0 .. word_count()-1.

@@ -9,16 +9,17 @@
 
 namespace roadbook {
 
-// Sparse Cholesky factorisation of symmetric positive definite matrices made of 6x6 blocks: the
-// normal equations of poses. The same bits on any number of threads, and the sparse inverse from
-// the same factor.
+// Sparse Cholesky factorisation of symmetric positive definite matrices of 6x6 blocks, such as the
+// normal equations of poses. It gives the same bits on any number of threads. The sparse inverse
+// comes from the same factor.
 //
-// Unknown `i` stands at `position(i)` of an elimination order that keeps the factor sparse
-// (approximate minimum degree). Matrix, factor and inverse share one storage: the factor's pattern.
+// Unknown `i` has position `position(i)` in an elimination order that keeps the factor sparse
+// (approximate minimum degree). Matrix, factor and inverse share one storage with the factor's
+// sparsity pattern.
 class BlockCholesky {
  public:
-  /// `pairs`: the blocks off the diagonal that may differ from zero, in either order, repeats
-  /// allowed.
+  /// `size`: number of unknowns (blocks of six rows). `pairs`: the blocks off the diagonal that may
+  /// differ from zero, in either order, repeats allowed.
   BlockCholesky(std::size_t size, const std::vector<std::pair<int, int>>& pairs);
 
   [[nodiscard]] std::size_t size() const { return position_.size(); }
@@ -28,7 +29,7 @@ class BlockCholesky {
   /// Blocks in the lower triangle of the factor.
   [[nodiscard]] std::size_t block_count() const { return rows_.size(); }
 
-  /// Where column `position` stands in the storage: its first block is the diagonal's, rows ascend.
+  /// A column of the storage: its first block is on the diagonal, its rows ascend.
   struct Column {
     const int* rows;
     Matrix6d* blocks;
@@ -37,20 +38,22 @@ class BlockCholesky {
   [[nodiscard]] Column column(int position);
 
   void set_zero();
-  /// Block of two unknowns, row at or below column: `transposed` tells that it holds (b, a).
+  /// The stored block of unknowns a and b, which lies on or below the diagonal. `transposed` is set
+  /// to true if it holds (b, a).
   [[nodiscard]] Matrix6d& block(int a, int b, bool& transposed);
   /// Adds `value` to block (a, b), and to (b, a) its transpose.
   void add(int a, int b, const Matrix6d& value);
 
   /// Replaces the matrix by its factor; false if it is not positive definite.
   bool factor(int num_threads);
-  /// Solves in place, by unknowns in the caller's numbering, six rows each. After `factor`.
+  /// Solves in place. `x`: six rows for each unknown, in the caller's order. Call `factor` first.
   void solve(Eigen::VectorXd& x) const;
-  /// The same for many right-hand sides at once, one a column.
+  /// The same for many right-hand sides at once, one in each column.
   using Panel = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   void solve(Panel& x, int num_threads) const;
-  /// Diagonal blocks of the inverse, by unknowns, from the sparse inverse (Takahashi et al. 1973).
-  /// After `factor`, whose result it replaces: a large map has no room for both.
+  /// Returns the diagonal blocks of the inverse, one for each unknown, from the sparse inverse
+  /// (Takahashi et al. 1973). Call `factor` first. Overwrites the factor, because the memory does
+  /// not hold both for a large map.
   [[nodiscard]] std::vector<Matrix6d> inverse_diagonal();
 
  private:

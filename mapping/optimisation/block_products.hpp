@@ -4,17 +4,17 @@
 
 namespace roadbook {
 
-// Products of small blocks, column by column as Eigen stores them, which most of the time of bundle
-// adjustment goes into. Sums are taken in the order of the inner index: the same bits on any
-// machine.
+// Products of small blocks, stored column by column as in Eigen. Bundle adjustment spends most of
+// its time here. Sums run in the order of the inner index, so that any machine gives the same bits.
 
-/// Column k of a factor L of 6x6 blocks taken off a later column j: block (i, j) -= L_ik L_jk^T.
+/// Update of column j by an earlier column k of a factor L of 6x6 blocks: block (i, j) -= L_ik
+/// L_jk^T.
 struct ColumnUpdate {
-  const double* L_jk;  ///< column k from the block of row j on
-  const int* rows;     ///< i of each block
-  std::size_t count;
-  const std::size_t* place;  ///< by row: which of `blocks` is (i, j)
-  double* blocks;
+  const double* L_jk;        ///< the blocks of column k, from row j on
+  const int* rows;           ///< row i of each of these blocks
+  std::size_t count;         ///< number of these blocks
+  const std::size_t* place;  ///< by row i: index of block (i, j) in `blocks`
+  double* blocks;            ///< the blocks of column j
 };
 void subtract_column(const ColumnUpdate& update);
 

@@ -11,10 +11,10 @@ namespace roadbook {
 
 /// A change of the state: right perturbations of the free poses, and of points and scales.
 struct BundleStep {
-  Eigen::VectorXd poses;  ///< six a free pose
+  Eigen::VectorXd poses;  ///< six for each free pose
   std::vector<Eigen::Vector3d> points;
   Eigen::VectorXd scales;
-  double model_decrease = 0.0;  ///< of the cost, as the linearised problem promises
+  double model_decrease = 0.0;  ///< decrease of the cost that the linearised problem predicts
 };
 
 /// The state moved by a step.
@@ -38,17 +38,17 @@ class BundleSystem {
                const BundleOptions& options);
 
   void linearise(const BundleState& state);
-  /// Step of (H + lambda * diag(H)) dx = b; false where that is not positive definite.
+  /// Solves (H + lambda * diag(H)) dx = b; false if the matrix is not positive definite.
   bool solve(double lambda, BundleStep& step);
-  /// Solves H x = b for other right-hand sides, in place, with the factor of the last `solve`
-  /// (whose lambda counts). One column each: `poses` has six rows a free pose, `points` three a
-  /// point. Free scales are held.
+  /// Solves the same system for other right-hand sides, in place, with the factor (and the lambda)
+  /// of the last `solve`. Each column is one right-hand side: `poses` has six rows for each free
+  /// pose, `points` three rows for each point. Free scales are held fixed.
   void solve_columns(BlockCholesky::Panel& poses, BlockCholesky::Panel& points) const;
   /// Largest absolute entry of the gradient.
   [[nodiscard]] double gradient_norm() const;
 
-  /// Marginal covariances of the free poses and of the scales. After solve(0, ...), whose factor it
-  /// uses up.
+  /// Marginal covariances of the free poses and of the scales. Call solve(0, ...) first; its factor
+  /// is overwritten.
   [[nodiscard]] std::vector<Matrix6d> pose_covariances(Eigen::MatrixXd& scale_covariance);
   /// Information of a point given the poses.
   [[nodiscard]] const Eigen::Matrix3d& point_information(std::size_t point) const {

@@ -12,7 +12,7 @@ namespace roadbook {
 // The residuals of bundle adjustment, laid out for the solver: grouped by landmark, so that a
 // landmark's part of the normal equations is one run through memory.
 
-/// What moves.
+/// The unknowns of bundle adjustment.
 struct BundleState {
   std::vector<Eigen::Isometry3d> poses;
   std::vector<Eigen::Vector3d> points;

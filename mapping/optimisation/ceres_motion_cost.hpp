@@ -11,8 +11,8 @@
 
 namespace roadbook {
 
-// What Ceres needs to minimise residuals of relative poses: the parameter block of a pose, its
-// manifold, and the residual of mapping/optimisation/motion_residual.hpp as cost functions.
+// Residuals of relative poses for Ceres: the parameter block of a pose, its manifold, and the
+// residual of mapping/optimisation/motion_residual.hpp as cost functions.
 
 /// A pose as a parameter block: unit quaternion (x, y, z, w), then translation [m].
 using PoseBlock = std::array<double, 7>;

@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-// What all uses of Ceres share.
+// Options and stopping rule that all uses of Ceres share.
 
 /// Options of a problem that owns its cost functions, while the caller owns manifolds and losses.
 [[nodiscard]] ceres::Problem::Options ceres_problem_options();

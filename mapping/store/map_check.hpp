@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-/// What `roadbook check MAP` says.
+/// The result of `roadbook check MAP`.
 struct MapReport {
   std::vector<Problem> problems;
   std::string digest;                       ///< empty where the file could not be read
@@ -22,8 +22,8 @@ struct MapReport {
 /// cannot be read or a lock throws (StorageError).
 [[nodiscard]] MapReport check_map(const std::filesystem::path& path);
 
-/// Contradictions in a map: ids without target, matrices that are no rotations, values that are not
-/// finite, keyframes out of order, map frames without a keyframe. At most `limit` of them.
+/// Returns contradictions in a map, at most `limit`: ids without target, matrices that are no
+/// rotations, values that are not finite, keyframes out of order, map frames without a keyframe.
 [[nodiscard]] std::vector<Problem> map_problems(const Map& map, std::size_t limit = 20);
 
 }  // namespace roadbook

@@ -28,11 +28,11 @@ class MapEventLog {
 
   /// Contents of all events so far, in order.
   [[nodiscard]] const std::vector<std::string>& events() const;
-  /// Stores an event; its number. StorageError leaves the log as it was.
+  /// Stores an event and returns its number. Throws StorageError, which leaves the log unchanged.
   std::int64_t append(const std::string& content) { return append(std::vector{content}); }
-  /// Stores events together, all or none; the number of the first. What waits for the disk is the
-  /// transaction, so that many events cost about what one does. `table`, if any, replaces a plain
-  /// table in the same transaction.
+  /// Stores events together, all or none, and returns the number of the first. The transaction
+  /// waits for the disk once, so many events cost about as much as one. `table`, if given, replaces
+  /// a plain table in the same transaction.
   std::int64_t append(const std::vector<std::string>& contents, const PlainTable* table = nullptr);
   /// Replaces a plain table of the map (see MapUpdate::write_table) in place.
   void write_table(const PlainTable& table);
@@ -42,13 +42,14 @@ class MapEventLog {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Contents of all events of a finished map's log, in order; none where it has no such log. Throws
-/// BadInput where the chain is broken.
+/// Returns the contents of all events of log `name` of a finished map, in order; empty if the map
+/// has no such log. Throws BadInput if the chain is broken.
 [[nodiscard]] std::vector<std::string> read_event_log(const std::filesystem::path& map,
                                                       const std::string& name);
 
-/// Copies all logs of a map, and the classes of its labels, into a file that is to take its place:
-/// what people did by hand outlives a build. Throws BadInput for a map that cannot be read.
+/// Copies all logs of map `from`, and the classes of its labels, into file `to`, which is to
+/// replace the map. So the work of users survives a build. Throws BadInput for a map that cannot be
+/// read.
 void carry_event_logs(const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// One problem for each log whose chain is broken.

@@ -12,8 +12,8 @@ void remove_database(const std::filesystem::path& file);
 /// Flushes `file` to the disk, renames it over `target` and flushes the folder.
 void replace_file(const std::filesystem::path& file, const std::filesystem::path& target);
 
-/// Rolls back what a killed writer left half done in `file` (its hot journal). A journal must not
-/// outlive the content it belongs to, or it would be played into the next file of that name.
+/// Rolls back an unfinished change of a killed writer in `file` (its hot journal). A journal must
+/// not remain, or SQLite would apply it to the next file of this name.
 void recover_database(const std::filesystem::path& file);
 
 }  // namespace roadbook

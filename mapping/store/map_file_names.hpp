@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-// How enumerations and plain structs of the map are spelled in the file.
+// Names of enumerations, and values of plain structs, as the map file stores them.
 
 /// Bytes of one packed observation: int32 landmark, float32 u, v, sigma.
 inline constexpr std::size_t kObservationBytes = 16;

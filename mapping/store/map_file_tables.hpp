@@ -21,7 +21,7 @@ void create_map_tables(const SqlDatabase& database);
 /// within each; the map has passed `map_problems`.
 void write_map_tables(const SqlDatabase& database, const Map& map);
 
-/// Throws BadInput naming table, row and column of a value that cannot be.
+/// Reads the tables. Throws BadInput with table, row and column of an invalid value.
 [[nodiscard]] Map read_map_tables(const SqlDatabase& database);
 
 /// Names of the private tables, `map_meta` not among them.
