@@ -10,17 +10,19 @@ struct DrawTogetherOptions {
   double step_m = 3.0;  ///< between the positions of the result
   double width_m =
       12.0;              ///< standard deviation of the window in which positions attract each other
-  double floor_m = 1.5;  ///< farther apart in height is another floor
-  int rounds = 8;        ///< a noisy street 60 m wide is then a few metres wide
+  double floor_m = 1.5;  ///< positions farther apart in height belong to different floors
+  int rounds = 8;        ///< of mean shift; reduce a noisy street of 60 m to a few metres
 };
 
-/// The passes, their positions moved sideways to where most of their neighbours were driven.
+/// Returns the passes with their positions moved sideways to the densest line of neighbouring
+/// positions.
 ///
-/// Satellite positions scatter over a band wider than the distance at which a cover tells two roads
-/// apart. A skeleton of the band has holes and fans; of its middle line it has not. Mean shift: a
-/// position moves to the weighted mean of the positions around it that were driven along about the
-/// same line in either sense (30 degrees), across that line only. Positions are counted in cells of
-/// a third of the width, so that the time does not grow with the square of the passes.
+/// Satellite positions scatter over a band that is wider than the distance at which a cover
+/// separates two roads. The skeleton of such a band has false holes and branches; the skeleton of
+/// its middle line has none. Mean shift: a position moves to the weighted mean of the positions
+/// around it with about the same line of driving, in either direction (30 degrees). It moves across
+/// that line only. Positions are counted in cells of a third of the width, so that the time does
+/// not grow with the square of the passes.
 ///
 /// Deterministic, single-threaded, linear in the driven length and the rounds.
 [[nodiscard]] std::vector<DrivenPass> draw_together(const std::vector<DrivenPass>& passes,

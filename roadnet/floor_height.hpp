@@ -2,7 +2,7 @@
 
 namespace roadbook {
 
-inline constexpr double kFloorHeight_m =
-    1.5;  ///< What is farther apart in height is another floor.
+/// Positions farther apart in height belong to different floors.
+inline constexpr double kFloorHeight_m = 1.5;
 
 }  // namespace roadbook

@@ -6,11 +6,11 @@
 
 namespace roadbook {
 
-/// Undirected graph of places, without loops from a node to itself or doubled edges.
+/// An undirected graph of positions, without self-loops or double edges.
 struct RoadGraph {
   std::vector<Eigen::Vector3d> positions;    ///< [m]
   std::vector<std::vector<int>> neighbours;  ///< ascending, symmetric
-  std::vector<int> origin;                   ///< index of the node before anything was removed
+  std::vector<int> origin;                   ///< index of the node before any node was removed
 
   [[nodiscard]] int size() const { return static_cast<int>(positions.size()); }
   [[nodiscard]] std::size_t degree(int node) const {
@@ -18,7 +18,7 @@ struct RoadGraph {
   }
   [[nodiscard]] bool has_edge(int a, int b) const;
 
-  /// Index of the new node; its `origin` is that index.
+  /// Adds a node and returns its index, which is also its `origin`.
   int add_node(const Eigen::Vector3d& position);
   /// Does nothing if the edge exists or a == b.
   void add_edge(int a, int b);

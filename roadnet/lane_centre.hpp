@@ -19,9 +19,9 @@ struct LaneCurves {
                                  const std::vector<LaneChain>& lanes,
                                  double step_m);
 
-/// Moves the points to the middle of the samples beside them, held smooth, and lengthens dead ends
-/// to where the vehicle went. The pull of the smoothness towards the inside of a curve of radius R
-/// ends at about 0.2 step^2 / R.
+/// Moves the points to the middle of the samples on both sides, keeps the line smooth, and
+/// lengthens dead ends to the last driven position. Smoothing shifts a curve of radius R to its
+/// inside by about 0.2 step^2 / R.
 void fit_centres(LaneCurves& curves, const std::vector<PassSamples>& passes, double reach_m);
 
 }  // namespace roadbook

@@ -4,11 +4,11 @@
 
 namespace roadbook {
 
-/// Brings a network into an order and direction that depend on places alone, and names its parts.
+/// Gives the parts of a network ids, and an order and direction that depend on positions alone.
 ///
-/// Lanes run the way most passes went; where that is undecided, from the end with the smaller x
-/// (then y). A lane or intersection that lies where one of `previous` lies keeps its id and, a
-/// lane, its direction; the others get ids derived from their place.
+/// Lanes run in the direction of most passes; if both directions have equally many, from the end
+/// with the smaller x (then y). A lane or intersection at the position of one in `previous` keeps
+/// its id, and a lane its direction. Other parts get ids derived from their position.
 void name_parts(RoadNetwork& network, const RoadNetwork* previous);
 
 }  // namespace roadbook

@@ -20,9 +20,10 @@ struct NetworkUse {
   double coverage = 0.0;  ///< fraction of samples within reach
 };
 
-/// Counts the passes over each lane by the distance driven along it, rounded: a pass over less than
-/// half of a lane does not count, unless no pass does more. Passes in reverse gear are counted
-/// apart: they do not say which way traffic goes. `samples` belong to `passes`.
+/// Counts the passes over each lane: the distance driven along the lane over its length, rounded. A
+/// pass over less than half of a lane does not count, unless no pass covers more. Passes in reverse
+/// gear are counted separately, because they do not show the direction of traffic. `samples` belong
+/// to `passes`.
 [[nodiscard]] NetworkUse measure_use(const LaneCurves& curves,
                                      const std::vector<DrivenPass>& passes,
                                      const std::vector<PassSamples>& samples,

@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-// The road network: lanes between intersections, found from driven positions alone.
+// The road network: lanes between intersections, found from driven positions only.
 
 /// One pass of the vehicle: positions in driving order [m, map frame]. A new pass begins where a
 /// session begins, after a gap, and where the driving direction changes.
@@ -18,12 +18,12 @@ struct DrivenPass {
 };
 
 struct Intersection {
-  std::uint64_t id = 0;  ///< stable: derived from its place, kept over map updates
+  std::uint64_t id = 0;  ///< derived from its position, and kept when the map is updated
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
 struct Lane {
-  std::uint64_t id = 0;  ///< stable over map updates
+  std::uint64_t id = 0;  ///< kept when the map is updated
   std::vector<Eigen::Vector3d>
       centre;                  ///< polyline [m]; first and last on intersections where joined
   int from_intersection = -1;  ///< index, -1: dead end
@@ -37,19 +37,19 @@ struct Lane {
   [[nodiscard]] bool one_way() const { return forward_passes == 0 || backward_passes == 0; }
 };
 
-/// A stretch that was driven and is not on the network: from one end of the longest part missed in
-/// a pass to its other end [m, map frame].
+/// A driven stretch that the network does not cover. `from` and `to` are the ends of the longest
+/// uncovered part of a pass [m, map frame].
 struct UncoveredStretch {
   Eigen::Vector3d from = Eigen::Vector3d::Zero();
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
-  double driven_m = 0.0;  ///< by all passes there
-  int parts = 0;          ///< of passes that lead there
+  double driven_m = 0.0;  ///< length of all uncovered parts there
+  int parts = 0;          ///< number of uncovered parts of passes there
 };
 
 enum class RoadNetworkStatus {
   kOk,
   kEmpty,        ///< nothing was driven
-  kLowCoverage,  ///< too many driven positions are off the network: not to be used
+  kLowCoverage,  ///< too many driven positions are off the network: do not use it
 };
 
 struct RoadNetwork {

@@ -7,20 +7,20 @@
 
 namespace roadbook {
 
-/// Which neighbours of a clique disappear with it [metric-semantic maps, algorithm 1, lines
-/// 23-24].
+/// The neighbours of a clique that are removed with it [metric-semantic maps, algorithm 1,
+/// lines 23-24].
 enum class SpurRule {
-  kKeep,       ///< none: dead ends are judged elsewhere
+  kKeep,       ///< none: another step decides on dead ends
   kHangsOnIt,  ///< nodes with no neighbour outside the clique
-  kDegreeOne,  ///< as written there: degree 1 after the clique's edges were added
+  kDegreeOne,  ///< as the paper states: degree 1 after the clique's edges were added
 };
 
-/// Maximal cliques of more than two nodes, largest first, equal ones by their nodes.
+/// Finds the maximal cliques of more than two nodes, largest first, equal ones by their nodes.
 /// Throws Refused if there are more than `limit`: their number grows exponentially with the passes.
 [[nodiscard]] std::vector<std::vector<int>> large_cliques(const RoadGraph& graph,
                                                           std::size_t limit);
 
-/// Merges `nodes` into the one of them that is nearest to their mean; returns it. The others lose
+/// Merges `nodes` into the node nearest to their mean and returns this node. The other nodes lose
 /// their edges and stay as isolated nodes.
 int contract(RoadGraph& graph, const std::vector<int>& nodes);
 

@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-/// Makes the driven cover a skeleton: prunes cliques until none is larger than 2, merges loops and
-/// pairs of intersections that are too small to be roads at this reach, and removes spurs that
-/// lead nowhere. Samples further than the reach from the rest keep their spur: a driven dead end.
+/// Reduces the cover to a skeleton. Prunes cliques until none is larger than 2. Merges loops and
+/// pairs of intersections that are too small to be roads at this reach. Removes spurs. A spur with
+/// samples farther than the reach from the rest of the graph is a driven dead end and stays.
 void simplify(RoadGraph& graph, const std::vector<PassSamples>& passes, double reach_m);
 
 /// Removes nodes without edges.
@@ -19,8 +19,8 @@ void remove_isolated(RoadGraph& graph);
 /// rest. Returns whether there were any.
 bool remove_spurs(RoadGraph& graph, const std::vector<PassSamples>& passes, double reach_m);
 
-/// Removes dead ends shorter than `min_length_m`, and parts of the graph that are a single lane as
-/// short. Returns whether there were any.
+/// Removes dead ends shorter than `min_length_m`, and components that are a single lane shorter
+/// than that. Returns whether there were any.
 bool remove_short_dead_ends(RoadGraph& graph, double min_length_m);
 
 }  // namespace roadbook

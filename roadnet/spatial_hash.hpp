@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// Points in cubes of one size: what lies near a place is found in constant time.
+/// A hash grid of points in cubes of one size. Finds the points near a position in constant time.
 class SpatialHash {
  public:
   explicit SpatialHash(double cell_m) : cells_(cell_m) {}
@@ -26,7 +26,8 @@ class SpatialHash {
     });
   }
 
-  /// Nearest point within `radius_m` <= cell size, the first inserted of equals; -1: none.
+  /// Index of the nearest point within `radius_m` <= cell size; of equally near points the first
+  /// inserted; -1 if there is none.
   [[nodiscard]] int nearest(const Eigen::Vector3d& place, double radius_m) const {
     int best = -1;
     double best_d2 = 0.0;

@@ -12,9 +12,10 @@ struct LaneChain {
   bool closed = false;  ///< a ring without intersection
 };
 
-/// Algorithm 2 of [metric-semantic maps], with edges instead of nodes removed and the terminals
-/// fixed beforehand (nodes of degree other than 2): every edge is in exactly one lane, and the
-/// lanes do not depend on the order of visits. Nodes without edges belong to no lane. Linear.
+/// Divides the graph into lanes [metric-semantic maps, algorithm 2]. Unlike the paper, it removes
+/// edges instead of nodes, and ends lanes at nodes of degree other than 2. So every edge is in
+/// exactly one lane, and the lanes do not depend on the order of the nodes. Nodes without edges
+/// belong to no lane. Linear.
 [[nodiscard]] std::vector<LaneChain> trace_lanes(const RoadGraph& graph);
 
 }  // namespace roadbook

@@ -5,10 +5,10 @@
 
 namespace roadbook {
 
-// A path as Bezier segments in a row: the data that is fitted, stored and exchanged [SPM, section
+// A path as a chain of Bezier segments: the data that is fitted, stored and exchanged [SPM, section
 // 3.1]. `PathCurve` is the same path prepared for queries.
 
-constexpr int kMinPathDegree = 3;  ///< fewer cannot have a continuous curvature at the joints
+constexpr int kMinPathDegree = 3;  ///< a lower degree has no continuous curvature at the joints
 constexpr int kMaxPathDegree = 9;
 
 struct BezierPath {
@@ -16,7 +16,8 @@ struct BezierPath {
   bool closed = false;
   /// Parameter values at the joints, ascending; one more than there are segments.
   std::vector<double> knots;
-  /// degree + 1 control points a segment [m], segment by segment; z rides along, unused in s and e.
+  /// degree + 1 control points for each segment [m, map], segment by segment. s and e do not depend
+  /// on z.
   std::vector<Eigen::Vector3d> points;
 
   [[nodiscard]] int segments() const { return static_cast<int>(knots.size()) - 1; }

@@ -8,18 +8,18 @@
 
 namespace roadbook {
 
-// The lanes of a road network as paths: centres with continuous curvature, how far they are from
-// what was driven, how tightly they bend, and how wide they are.
+// The lanes of a road network as paths: centre lines with continuous curvature, their distance from
+// the driven positions, their curvature and their width.
 //
-// A lane's polyline is good for its topology, not for its shape: corners of it are a metre off and
-// have kinks. So a path is fitted to the driven positions themselves, given to it along the
-// polyline first and by projection on the path then. Near intersections, where vehicles turn off,
-// none count: the path goes on as smoothly as it can to the intersection, where lanes meet.
+// The polyline of a lane shows its topology, but its corners are a metre off and have kinks. So the
+// path is fitted to the driven positions themselves. They are assigned along the polyline first,
+// and then by projection on the path. Positions near intersections, where vehicles turn, do not
+// count: the path continues smoothly to the intersection, where lanes meet.
 
 struct LanePathOptions {
-  double max_deviation_m = 0.2;  ///< smoothing is weakened until the path follows what was driven
-  /// Wiggles of this wavelength are halved (PathFitOptions). A quarter turn of 5 m radius is a
-  /// quarter of a wave of 30 m; what is much shorter is scatter of the passes.
+  double max_deviation_m = 0.2;  ///< smoothing is weakened until the path is this near
+  /// Oscillations of this wavelength are halved (PathFitOptions). A quarter turn of 5 m radius is a
+  /// quarter of a wave of 30 m; much shorter ones are scatter of the passes.
   double smooth_below_m = 10.0;
   double least_smooth_m = 3.0;   ///< weakened no further than this
   double tightest_turn = 0.5;    ///< [1/m] nor where the path would bend like this: no car does
@@ -51,19 +51,19 @@ struct LanePath {
   double deviation_s_m = 0.0;      ///< where
   double max_curvature = 0.0;      ///< [1/m], absolute
   double max_curvature_s_m = 0.0;  ///< where
-  /// Swept by the vehicle in 95 % of the passes: its width and four standard deviations of the
-  /// positions. What was driven, not what is free.
+  /// Width that the vehicle swept in 95 % of the passes: its own width plus four standard
+  /// deviations of the positions. It is the driven width, not the free width.
   double width_m = 0.0;
   /// Half width of the tube in which path coordinates are one to one (Lemma 1), up to
   /// `widest_tube_m`.
   double tube_m = 0.0;
 };
 
-/// One path a lane, in the order of the lanes. Lanes that meet share the end of their paths; a ring
-/// is a closed path. `passes` are those the network was built from. Deterministic for any number of
-/// threads.
+/// Fits one path to each lane, in the order of the lanes. Lanes that meet share the end of their
+/// paths; a ring is a closed path. `passes`: those that the network was built from. Deterministic
+/// for any number of threads.
 ///
-/// Throws InvalidOption, BadInput for positions that are not finite.
+/// Throws InvalidOption, and BadInput for positions that are not finite.
 [[nodiscard]] std::vector<LanePath> lane_paths(const RoadNetwork& network,
                                                const std::vector<DrivenPass>& passes,
                                                const LanePathOptions& options = {},

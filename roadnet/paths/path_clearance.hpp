@@ -6,7 +6,7 @@
 
 namespace roadbook {
 
-/// Two places of a path that come near each other although they lie far apart along it.
+/// Two positions of a path that are near each other in the plane and far apart along the path.
 struct NearPair {
   double s_m = 0.0;
   double other_s_m = 0.0;
@@ -23,7 +23,8 @@ struct NearPairs {
   std::vector<bool> sample_maybe_near;
 };
 
-/// All pairs nearer than `within_m` whose places lie more than `apart_m` apart along the path.
+/// Finds all pairs nearer than `within_m` in the plane and more than `apart_m` apart along the
+/// path.
 [[nodiscard]] NearPairs near_pairs(const PathCurve& curve, double within_m, double apart_m);
 
 }  // namespace roadbook

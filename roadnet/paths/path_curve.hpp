@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-/// What a path is like at one place of its arc length.
+/// Position, direction, curvature and height of a path at one arc length.
 struct PathPoint {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m, map frame]
   Eigen::Vector2d tangent = Eigen::Vector2d::UnitX();  ///< unit, in the direction of travel
@@ -22,8 +22,9 @@ struct PathPoint {
 /// A path by its arc length: the g(s) of [SPM], whose speed is one everywhere. The parameter of a
 /// Bezier segment is not its length: the error is up to half a metre at e = 6 m.
 ///
-/// Arc length is a Chebyshev series of the speed on pieces cut until it ends at rounding; the way
-/// back is Newton's method on that series. Immutable and safe to share between threads.
+/// The path is cut into pieces until a Chebyshev series gives the arc length of each to rounding
+/// error. Newton's method on the series gives the inverse. Immutable and safe to share between
+/// threads.
 class PathCurve {
  public:
   /// Throws BadInput for a path that fails its check or has zero speed somewhere.
@@ -33,12 +34,13 @@ class PathCurve {
   [[nodiscard]] double length_m() const { return length_m_; }
   [[nodiscard]] bool closed() const { return path_.closed; }
 
-  /// At `s_m`: taken around the ring on a closed path, held to [0, length] on an open one.
+  /// The point at `s_m`. `s_m` is wrapped around a closed path, and clamped to [0, length] on an
+  /// open one.
   [[nodiscard]] PathPoint at(double s_m) const;
 
-  /// `s_m` in [0, length): around the ring on a closed path; held to [0, length] on an open one.
+  /// `s_m`, wrapped to [0, length) on a closed path, or clamped to [0, length] on an open one.
   [[nodiscard]] double wrapped(double s_m) const;
-  /// Distance along the path between two places, the shorter way round on a closed path (A5).
+  /// Distance along the path between two positions; on a closed path, the shorter of both ways.
   [[nodiscard]] double distance_along(double a_m, double b_m) const;
 
   [[nodiscard]] const std::vector<PathPiece>& pieces() const { return pieces_; }
@@ -51,12 +53,13 @@ class PathCurve {
   double length_m_ = 0.0;
 };
 
-/// The place of largest absolute curvature within [s_begin, s_end] (not beyond the ends), found on
-/// a grid of about `step_m` and refined there.
+/// The position of largest absolute curvature.
 struct CurvaturePeak {
   double s_m = 0.0;
   double curvature = 0.0;  ///< [1/m], with its sign
 };
+/// Finds the peak within [s_begin, s_end], clamped to the path, on a grid of about `step_m`, and
+/// refines it.
 [[nodiscard]] CurvaturePeak curvature_peak(const PathCurve& curve,
                                            double s_begin_m,
                                            double s_end_m,

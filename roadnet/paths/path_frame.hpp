@@ -16,21 +16,21 @@ namespace roadbook {
 
 enum class ProjectionStatus : std::uint8_t {
   kInside,       ///< s and e are set
-  kOutsideTube,  ///< no place of the path is perpendicular to the point within the tube
-  kBeforeStart,  ///< the nearest place is the start of an open path, and the point lies behind it
-  kBeyondEnd,    ///< likewise the end
-  kNotUnique,    ///< several places of the path claim the point
+  kOutsideTube,  ///< no foot point on the path is within the tube
+  kBeforeStart,  ///< the nearest point of the path is its open start, and the point lies behind it
+  kBeyondEnd,    ///< the nearest point of the path is its open end, and the point lies beyond it
+  kNotUnique,    ///< several (s, e) in the tube map to the point
 };
 [[nodiscard]] const char* to_text(ProjectionStatus status);
 
 struct PathProjection {
   ProjectionStatus status = ProjectionStatus::kOutsideTube;
-  double s_m;  ///< NaN unless kInside: a number that must not be used cannot be
-  double e_m;
+  double s_m;  ///< NaN unless kInside
+  double e_m;  ///< NaN unless kInside
   [[nodiscard]] bool inside() const { return status == ProjectionStatus::kInside; }
 };
 
-/// Where the last query ended: the next one starts there.
+/// Result position of the last query, where the next query starts its search.
 struct PathCursor {
   std::size_t piece = 0;
   double v = 0.0;
@@ -39,26 +39,26 @@ struct PathCursor {
 /// A path and the tube in which its coordinates are used. Immutable: share it between threads, with
 /// a cursor for each.
 ///
-/// A point is inside if exactly one (s, e) of the tube maps to it. Where Lemma 1 holds, one foot
-/// point found near the last one is proof enough; elsewhere, and where the search near the last
-/// one fails, all parts of the path whose tube can hold the point are looked at (a grid tells
-/// which). Tube and ends are taken with a tolerance of 1e-9 m, for what has gone there and back.
+/// A point is inside if exactly one (s, e) of the tube maps to it. Where [SPM, lemma 1] holds, one
+/// foot point near the last query is sufficient. Otherwise, or if the search near the last query
+/// fails, all parts of the path whose tube can hold the point are searched (found by a grid). Tube
+/// and ends have a tolerance of 1e-9 m, so that a point survives conversion in both directions.
 class PathFrame {
  public:
-  /// Checks Lemma 1; a path that breaks it is still usable, and says kNotUnique where it must.
-  /// Throws InvalidOption for the tube.
+  /// Checks [SPM, lemma 1]. A path that violates it is still usable; `project` returns kNotUnique
+  /// for ambiguous points. Throws InvalidOption for the tube.
   PathFrame(PathCurve curve, const Tube& tube);
 
   [[nodiscard]] const PathCurve& curve() const { return curve_; }
   [[nodiscard]] const Tube& tube() const { return tube_; }
-  /// Places that break Lemma 1.
+  /// Stretches that violate [SPM, lemma 1].
   [[nodiscard]] const std::vector<TubeViolation>& violations() const { return check_.violations; }
 
   /// Path coordinates of a point; the same for any cursor. A point that is not finite is outside.
   [[nodiscard]] PathProjection project(const Eigen::Vector2d& p, PathCursor& cursor) const;
   [[nodiscard]] PathProjection project(const Eigen::Vector2d& p) const;
 
-  /// The point at (s, e): none outside the tube or beyond an open end.
+  /// The point at (s, e) [m, map]; empty outside the tube or beyond an open end.
   [[nodiscard]] std::optional<Eigen::Vector2d> position(double s_m, double e_m) const;
 
  private:

@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// A short stretch of a path, ready for fast evaluation. The variable v runs from -1 to 1: powers
-/// of it are well conditioned there, and Horner's rule takes fewer steps than Bernstein's form.
+/// A short piece of a path for fast evaluation. The variable v runs from -1 to 1, where powers are
+/// well conditioned. Horner's rule takes fewer steps than Bernstein's form.
 struct PathPiece {
   struct Derivatives {
     double x, y, dx, dy, ddx, ddy;
@@ -61,8 +61,8 @@ struct PathPiece {
   [[nodiscard]] double v_at(double arc_m) const;
 };
 
-/// Cuts a path into pieces that turn little and whose arc length is exact to rounding. Throws
-/// BadInput if the path has a point of zero speed.
+/// Cuts a path into pieces with a small turn angle and an arc length that is exact to rounding
+/// error. Throws BadInput if the path has a point of zero speed.
 [[nodiscard]] std::vector<PathPiece> cut_into_pieces(const BezierPath& path);
 
 }  // namespace roadbook

@@ -2,8 +2,9 @@
 
 namespace roadbook {
 
-// Converts the sign of the lateral coordinate e. In roadbook, ISO 8855 and OpenDRIVE, e is positive
-// to the left of the direction of travel. In [SPM, eq. 5] it is positive to the right.
+// Conversion between the two signs of e. In roadbook, ISO 8855 and OpenDRIVE, e is positive to the
+// left of the direction of travel. In [SPM, eq. 5] it is positive to the right. The paper is
+// converted here only.
 
 [[nodiscard]] constexpr double to_document_sign(double e_m) { return -e_m; }
 [[nodiscard]] constexpr double from_document_sign(double e_document_m) { return -e_document_m; }

@@ -5,18 +5,18 @@
 
 namespace roadbook {
 
-/// The B-splines of a degree with two continuous derivatives over equal intervals, as they look in
+/// The B-splines of one degree with two continuous derivatives over equal intervals, converted to
 /// Bezier form on each interval.
 class PathSpline {
  public:
   PathSpline(int degree, int segments, bool closed);
 
   [[nodiscard]] int unknowns() const { return unknowns_; }
-  /// Index of the k-th coefficient that matters on a segment, k in 0..degree.
+  /// Index of the k-th coefficient that acts on a segment, k in 0..degree.
   [[nodiscard]] int unknown(int segment, int k) const {
     return ((degree_ - 2) * segment + k) % unknowns_;
   }
-  /// Control points of a segment = matrix x coefficients that matter there.
+  /// Extraction matrix of a segment: control points = matrix * coefficients that act on it.
   [[nodiscard]] const Eigen::MatrixXd& extraction(int segment) const {
     return extraction_[static_cast<std::size_t>(segment)];
   }

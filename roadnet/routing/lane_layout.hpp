@@ -9,8 +9,8 @@
 
 namespace roadbook {
 
-// A road network as planners' formats want it: lanes that end before the intersections, and curves
-// over the intersections from one to the next, without a kink where they meet.
+// A road network in the form of planners' formats: lanes that end before the intersections, and
+// curves across the intersections that join them without a kink.
 
 struct LaneLayoutOptions {
   double cut_m =
@@ -18,8 +18,8 @@ struct LaneLayoutOptions {
   RoutingOptions routing;  ///< which turns there are
 };
 
-/// A lane between the places where it is cut. It runs the way traffic goes: where a lane was driven
-/// against its direction only, its curve is turned round.
+/// A lane between its cuts, in the direction of traffic. If a lane was only driven against its
+/// direction, its curve is reversed.
 struct LanePiece {
   int lane = -1;  ///< index in the network
   std::uint64_t id = 0;
@@ -53,13 +53,13 @@ struct LaneLayout {
   std::vector<Connector> connectors;  ///< by intersection, then by pieces
 };
 
-/// Position, tangent and curvature agree where pieces and connectors meet. `paths` are those of
-/// `network`, in any order; a lane without path is left out.
+/// Cuts the lanes and connects them. Position, tangent and curvature agree where pieces and
+/// connectors meet. `paths`: those of `network`, in any order; a lane without a path is left out.
 [[nodiscard]] LaneLayout lay_out(const RoadNetwork& network,
                                  const std::vector<LanePath>& paths,
                                  const LaneLayoutOptions& options = {});
 
-/// A curve of degree 5 between two places with their directions and curvatures.
+/// A curve of degree 5 between two points with their directions and curvatures.
 [[nodiscard]] PathCurve connecting_curve(const PathPoint& from, const PathPoint& to);
 
 }  // namespace roadbook

@@ -9,21 +9,22 @@
 
 namespace roadbook {
 
-// Which lane a parking space is entered from, and whether it can be reached.
+// Links parking spaces to the lanes that lead into them, and checks whether they can be reached.
 
-/// A parking space as a link needs it.
+/// Position and direction of a parking space.
 struct SpacePlace {
   std::uint64_t id = 0;
   Eigen::Vector3d front = Eigen::Vector3d::Zero();     ///< middle of the open side [m]
   Eigen::Vector2d outwards = Eigen::Vector2d::Zero();  ///< unit, from the back to the open side
 };
 
-/// From the corners, the two of the open side first, then the two of the back.
+/// Makes a SpacePlace from the corners [m, map]: the two of the open side first, then the two of
+/// the back.
 [[nodiscard]] SpacePlace space_place(std::uint64_t id, const std::vector<Eigen::Vector3d>& corners);
 
 struct LaneLinkOptions {
   double reach_m = 10.0;  ///< from the open side to the lane's centre
-  double cone_rad = 1.3;  ///< the lane lies before the space within this to either side
+  double cone_rad = 1.3;  ///< largest angle between the space's direction and that to the lane
 
   /// Throws InvalidOption.
   void check() const;
@@ -44,7 +45,8 @@ struct LaneLink {
   std::string reason;      ///< empty where linked
 };
 
-/// One link a space, in their order: to the nearest place of a lane before the open side.
+/// Returns one link for each space, in their order: to the nearest lane position in front of the
+/// open side.
 [[nodiscard]] std::vector<LaneLink> link_spaces(const RoadNetwork& network,
                                                 const std::vector<SpacePlace>& spaces,
                                                 const LaneLinkOptions& options = {});

@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// A way of driving over a whole lane.
+/// A traversal of a whole lane in one direction and gear: a state of the route search.
 struct LaneState {
   int lane = -1;
   bool along = true;
@@ -23,14 +23,15 @@ struct LaneState {
   bool ends_dead = false;  ///< at a dead end
 };
 
-/// Nodes: intersections, then a node of its own for each dead end, and one for each ring.
+/// Returns the states of all lanes. Nodes are the intersections, then one node for each dead end,
+/// and one for each ring.
 ///
-/// A lane may be driven in a direction in which vehicles were seen to go; backwards in both, where
-/// one was seen to back up; in every way where nothing is known.
+/// A lane may be driven in each direction in which a pass went. It may be driven in reverse gear,
+/// in both directions, if a pass did so. It may be driven in every way if it has no pass.
 [[nodiscard]] std::vector<LaneState> lane_states(const RoadNetwork& network,
                                                  const RoutingOptions& options);
 
-/// What going over from one state to the next costs [m]; none where it is not possible.
+/// Cost [m] of the transition from one state to the next; empty if it is impossible.
 [[nodiscard]] std::optional<double> transition_cost(const LaneState& from,
                                                     const LaneState& to,
                                                     const RoutingOptions& options);

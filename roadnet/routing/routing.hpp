@@ -12,8 +12,8 @@
 
 namespace roadbook {
 
-// Ways from place to place over the lanes, as they were driven: with the traffic of one-way lanes,
-// without turning round on the spot, backwards only where vehicles were seen to back up.
+// Routes over the lanes, by the rules of the recorded driving: one-way lanes in their direction, no
+// U-turns within a lane, reverse gear only where a vehicle was recorded in reverse gear.
 
 struct RouteLeg {
   int lane = -1;
@@ -48,9 +48,9 @@ class Router {
   Router& operator=(Router&&) noexcept;
   ~Router();
 
-  /// The cheapest route (A* with the straight distance as bound); of equals the one found first in
-  /// the order of lanes. A vehicle may stand in either direction at `from`, and end in either.
-  /// Throws InvalidOption for a place that is not on the network.
+  /// Finds the cheapest route (A* with the straight distance as bound); of equally cheap ones the
+  /// first in the order of lanes. The vehicle may face either direction at `from` and at `to`.
+  /// Throws InvalidOption for a position that is not on the network.
   [[nodiscard]] Route route(const NetworkPlace& from, const NetworkPlace& to) const;
 
  private:

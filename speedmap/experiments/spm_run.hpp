@@ -31,7 +31,7 @@ struct SpmHorizonShape {
   double wavelength_m = 20.0;
   int points = 80;
 };
-/// The document's probe line, which no car could follow (A17: radius 2.9 m), and a drivable one.
+/// The document's probe line, which no car could follow (radius 2.9 m), and a drivable one.
 [[nodiscard]] SpmHorizonShape probe_horizon(const SpmExperimentOptions& options);
 [[nodiscard]] SpmHorizonShape drivable_horizon(const SpmExperimentOptions& options);
 

@@ -8,7 +8,7 @@ namespace roadbook {
 
 // The content of a map grows old ([environment representation]: static, semi-static, semi-dynamic,
 // dynamic layers). The source orders layers by how often they change. It puts weather into two of
-// them, and traffic signs into the layer of pedestrians (A47). Therefore age is kept by item, and
+// them, and traffic signs into the layer of pedestrians. Therefore age is kept by item, and
 // the layer of an item follows from its half-life.
 
 enum class AgeLayer : std::uint8_t {

@@ -9,7 +9,7 @@ namespace roadbook {
 // The graph of [metric-semantic maps, figure 5]: places x_i of the map, each with its prior x_i0,
 // smoothness edges between neighbours, and observations z.
 //
-// Minus the logarithm of (1) to (3), with weights and units (A38), every edge once:
+// Minus the logarithm of (1) to (3), with weights and units, every edge once:
 //   E(x) = 1/2 sum_i w0_i (x_i - x_i0)^2 + 1/2 sum_(i,j) ws_ij (x_i - x_j)^2
 //        + 1/2 sum_k wz_k (z_k - x_i(k))^2
 // x is the probability that somebody is met at the place during a visit: no unit. Weights are

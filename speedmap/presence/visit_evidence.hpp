@@ -9,7 +9,7 @@ namespace roadbook {
 
 // Evidence of one visit for each place: a person was met there, or the place was in sight and
 // empty. The source uses detections alone. Then a place that was seen empty a hundred times is as
-// dangerous as a place that was never seen (A39).
+// dangerous as a place that was never seen.
 
 /// A person seen from one pose.
 struct SeenPerson {

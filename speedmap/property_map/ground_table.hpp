@@ -18,7 +18,7 @@ namespace roadbook {
 // each cell as one place.
 //
 // How much a frame is worth: neighbouring pixels and successive frames repeat the segmentation's
-// errors, so that pixels must not be counted as independent labels (A16). Labels are therefore
+// errors, so that pixels must not be counted as independent labels. Labels are therefore
 // counted by ground, not by pixels: `labels_per_m2` independent labels for a square metre seen over
 // a metre of travel. That does not depend on resolution, frame rate or speed; 0.6 keeps the map's
 // class uncertainty honest for errors that persist over 3 x 1 m of ground and 10 m of travel

@@ -46,7 +46,7 @@ struct RayHit {
     const GroundPlane& plane,
     const Eigen::Vector3d& point);
 
-/// (4) as printed, for comparison: both defects in one (A1).
+/// (4) as printed, for comparison: both defects in one.
 [[nodiscard]] Eigen::Vector3d literal_ground_point(const Eigen::Vector3d& ray_camera,
                                                    const Eigen::Isometry3d& T_world_camera,
                                                    const GroundPlane& plane);

@@ -13,7 +13,7 @@ struct PathPlace {
   double e_m = 0.0;
 };
 
-/// Reach of a knot along and across the path: D of the kernel (7), scaled separately (A7).
+/// Reach of a knot along and across the path: D of the kernel (7), scaled separately.
 ///
 /// At least two knot spacings: below, the gradient of the interpolation swings between the knots
 /// (at 1.5 spacings a linear function's slope is 0.47 to 1.60 of the true one, at 2 it is 0.98 to

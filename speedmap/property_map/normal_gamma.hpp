@@ -9,7 +9,7 @@ namespace roadbook {
 struct NormalGamma {
   double mu = 0.0;
   double lambda = 1.0;
-  double alpha = 2.0;  ///< above 1, or the variance of a measurement would be infinite (A13)
+  double alpha = 2.0;  ///< above 1, or the variance of a measurement would be infinite
   double beta = 1.0;
 
   /// E[1 / tau]: expected variance within the class.
@@ -30,7 +30,7 @@ struct NormalGamma {
 [[nodiscard]] NormalGamma conjugate_update(const NormalGamma& prior, double y);
 
 /// Logarithm of the Student t density of the next measurement: c_j of (12c) with the gamma ratio
-/// outside the root. `literal_root` takes the printed formula, ratio inside (A8: too small by about
+/// outside the root. `literal_root` takes the printed formula, ratio inside (too small by about
 /// alpha^(1/4)).
 [[nodiscard]] double log_marginal(const NormalGamma& prior, double y, bool literal_root = false);
 

@@ -13,7 +13,7 @@ namespace roadbook {
 /// How a class label changes the knots around it.
 enum class SemanticModel {
   /// (9a) of the document, for its pseudo-likelihood (8): a geometric mean over the knots, which is
-  /// not normalised over the classes (A12) and spreads labels over class borders.
+  /// not normalised over the classes and spreads labels over class borders.
   kGeometricPool,
   /// p(c) = sum_l I_l sum_i C[i][c] w_i^l, the same mixture as the property's (10): a label goes to
   /// the knots and classes that explain it.

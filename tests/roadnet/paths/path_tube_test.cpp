@@ -42,7 +42,7 @@ TEST(PathTube, AGentleRoadBreaksNothing) {
 TEST(PathTube, ACircleMayBeAsWideAsItsRadiusAndNoWider) {
   const PathCurve ring = fitted(circle(20.0), 24, true);
   EXPECT_TRUE(check_tube(ring, {-3.0, 19.9}).one_to_one());
-  const TubeCheck check = check_tube(ring, {-20.1, 3.0});  // the larger side counts (A4)
+  const TubeCheck check = check_tube(ring, {-20.1, 3.0});  // the larger side counts
   ASSERT_FALSE(check.one_to_one());
   ASSERT_NE(find(check, TubeCondition::kCurvature), nullptr);
   EXPECT_NEAR(find(check, TubeCondition::kCurvature)->got, 0.05, 1e-4);

@@ -79,7 +79,7 @@ TEST(Visit, SeeingSomebodyRaisesDangerThereAndFadesWithinTheReach) {
   EXPECT_GT(after, presence_after(grid, 3, person, person + Eigen::Vector2d(0.0, 2.0)));
 }
 
-// A39: six visits without any person.
+// Six visits without any person.
 TEST(Visit, SeeingNobodySixTimesMakesAPlaceSafe) {
   const PresenceGrid grid = small_place();
   const Eigen::Vector2d person(20.1, 1.1);

@@ -32,7 +32,7 @@ TEST(NormalGamma, MarginalAgreesWithQuadratureAndThePrintedOneDoesNot) {
     const NormalGamma ng{0.7, 4.0, alpha, 0.01 * alpha};
     for (const double y : {0.2, 0.7, 0.95}) {
       EXPECT_NEAR(std::exp(log_marginal(ng, y)) / student_by_quadrature(ng, y), 1.0, 1e-10);
-      // A8: gamma ratio inside the root. Known ratio: sqrt of it.
+      // The paper prints the gamma ratio inside the root. Known ratio: sqrt of it.
       EXPECT_NEAR(log_marginal(ng, y, true) - log_marginal(ng, y),
                   -0.5 * (std::lgamma(alpha + 0.5) - std::lgamma(alpha)), 1e-11);
     }
