@@ -21,12 +21,12 @@ struct LanePathOptions {
   /// Oscillations of this wavelength are halved (PathFitOptions). A quarter turn of 5 m radius is a
   /// quarter of a wave of 30 m; much shorter ones are scatter of the passes.
   double smooth_below_m = 10.0;
-  double least_smooth_m = 3.0;   ///< weakened no further than this
-  double tightest_turn = 0.5;    ///< [1/m] nor where the path would bend like this: no car does
-  double segment_m = 4.0;        ///< length of a segment: the smoothing decides, not the segments
-  double junction_m = 6.0;       ///< to either side of an intersection no position counts
-  double vehicle_width_m = 1.9;  ///< of the recording vehicle, where the map does not know it
-  double widest_tube_m = 5.0;    ///< path coordinates farther out are of no use in a car park
+  double least_smooth_m = 3.0;   ///< lower bound of the weakened wavelength
+  double tightest_turn = 0.5;    ///< [1/m]; smoothing is not weakened to a curvature above this
+  double segment_m = 4.0;        ///< length of a segment; the smoothing decides the shape
+  double junction_m = 6.0;       ///< positions nearer to an intersection do not count
+  double vehicle_width_m = 1.9;  ///< of the recording vehicle, if the map does not know it
+  double widest_tube_m = 5.0;    ///< upper bound of `tube_m`
   int degree = 6;
 
   /// Throws InvalidOption.
@@ -35,7 +35,7 @@ struct LanePathOptions {
 
 enum class LanePathStatus : std::uint8_t {
   kOk,
-  kDeviates,    ///< farther from what was driven than `max_deviation_m`
+  kDeviates,    ///< farther from the driven positions than `max_deviation_m`
   kDegenerate,  ///< the lane has no length: no path
 };
 [[nodiscard]] const char* to_text(LanePathStatus status);
@@ -48,13 +48,13 @@ struct LanePath {
   /// Largest distance of the path from the mean of the driven positions, over stretches of 1 m;
   /// away from intersections.
   double deviation_m = 0.0;
-  double deviation_s_m = 0.0;      ///< where
+  double deviation_s_m = 0.0;      ///< s of this deviation
   double max_curvature = 0.0;      ///< [1/m], absolute
-  double max_curvature_s_m = 0.0;  ///< where
+  double max_curvature_s_m = 0.0;  ///< s of this curvature
   /// Width that the vehicle swept in 95 % of the passes: its own width plus four standard
   /// deviations of the positions. It is the driven width, not the free width.
   double width_m = 0.0;
-  /// Half width of the tube in which path coordinates are one to one (Lemma 1), up to
+  /// Half width of the tube in which path coordinates are unique [SPM, lemma 1], at most
   /// `widest_tube_m`.
   double tube_m = 0.0;
 };

@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// A place on the network: a lane and the way along its centre polyline.
+/// A position on the network: a lane and the distance along its centre polyline.
 struct NetworkPlace {
   int lane = -1;
   double s_m = 0.0;         ///< from the first point of the lane's centre

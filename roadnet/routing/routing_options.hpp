@@ -13,7 +13,7 @@ struct RoutingOptions {
   double gear_change_cost_m = 10.0;
   double reverse_factor = 3.0;      ///< a metre backwards costs this many forwards; 1 or more
   double turn_round_cost_m = 20.0;  ///< at a dead end that vehicles came out of forwards
-  double direction_over_m = 3.0;  ///< a lane's direction at its end is that to the point so far in
+  double direction_over_m = 3.0;  ///< length of lane over which its direction at an end is measured
   bool allow_reverse = true;
 
   /// Throws InvalidOption.

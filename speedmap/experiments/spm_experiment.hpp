@@ -29,27 +29,29 @@ struct SpmMethodScore {
 
 struct SpmExperiment {
   std::vector<SpmMethodScore> methods;
-  std::vector<SpmHorizonScore> horizons;  ///< the document's probe line
+  std::vector<SpmHorizonScore> horizons;  ///< the paper's probe line
   std::vector<SpmHorizonScore> drivable;  ///< one that a car can follow
   int horizons_per_map = 0;
   double pixels_per_frame = 0.0;
 };
 
-/// Runs it; maps in parallel, the same result for any number of threads. `baselines`: KF and GP
-/// too, which take most of the time.
+/// Runs the experiment, maps in parallel. The result is the same for any number of threads.
+/// `baselines`: also runs Kalman filter (KF) and Gaussian process (GP), which take most of the
+/// time.
 [[nodiscard]] SpmExperiment run_spm_experiment(const SpmExperimentOptions& options,
                                                const std::vector<SpmMethod>& methods,
                                                bool baselines,
                                                int num_threads,
                                                const Progress& progress = {});
 
-/// Maps in which the median RMS error of `method` is below half of every baseline's (KF, GP).
+/// Returns the number of maps in which the median RMS error of `method` is below half of that of
+/// every baseline (KF, GP).
 [[nodiscard]] int maps_below_half(const std::vector<SpmHorizonScore>& horizons,
                                   std::size_t method,
                                   std::size_t first_baseline,
                                   int horizons_per_map);
 
-/// Random walks tried for the Kalman filter, per measurement.
+/// Standard deviations of the random walk per measurement that the Kalman filter is run with.
 [[nodiscard]] const std::vector<double>& spm_kalman_walks();
 
 /// Mean and half width of its 95 % interval (Student t).

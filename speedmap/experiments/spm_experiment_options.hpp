@@ -62,7 +62,7 @@ struct SpmExperimentOptions {
   std::vector<double> prior_counts = {1.0, 5.0, 1.0};
   double prior_error = 0.9;  ///< each parameter times 1 + U(-this, this)
 
-  // Places of the scores.
+  // Positions of the scores.
   double score_until_m = 600.0;
   double score_every_m = 50.0;
   double horizon_from_m = 140.0;
@@ -72,7 +72,7 @@ struct SpmExperimentOptions {
   double horizon_amplitude_m = 3.5;
   double horizon_wavelength_m = 20.0;
   double drivable_wavelength_m = 120.0;  ///< same amplitude: a bend of 100 m radius at most
-  double history_m = 100.0;              ///< what KF and GP are given
+  double history_m = 100.0;              ///< length of the measurements that KF and GP use
   double kalman_sigma = 0.06;            ///< KF: noise of a measurement
 
   /// Throws InvalidOption.

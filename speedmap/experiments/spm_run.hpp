@@ -14,24 +14,24 @@ struct SpmMethod {
   PropertyMapOptions map;
   RefreshOptions refresh;
   double label_weight = 1.0;
-  double knot_spacing_m = 0.0;  ///< of the estimate; 0: the truth's
-  double kernel_width_m = 0.0;  ///< likewise
+  double knot_spacing_m = 0.0;  ///< of the estimate; 0: as in the truth
+  double kernel_width_m = 0.0;  ///< of the estimate; 0: as in the truth
 };
 
-/// The comparison of the experiment: literal formulas and prior, one repair after the other, and
-/// last the default.
+/// The methods that the experiment compares: printed formulas and prior, then one correction after
+/// the other, and last the default.
 [[nodiscard]] std::vector<SpmMethod> spm_methods();
 /// The default with other kernel widths and knot spacings.
 [[nodiscard]] std::vector<SpmMethod> spm_sensitivity_methods(const SpmExperimentOptions& options);
 
-/// A line of places ahead of the vehicle: e = amplitude cos(2 pi n / wavelength) after n metres, in
-/// the document's sign.
+/// A line of positions ahead of the vehicle: e = amplitude cos(2 pi n / wavelength) after n metres,
+/// with the paper's sign of e.
 struct SpmHorizonShape {
   double amplitude_m = 3.5;
   double wavelength_m = 20.0;
   int points = 80;
 };
-/// The document's probe line, which no car could follow (radius 2.9 m), and a drivable one.
+/// The paper's probe line, which no car could follow (radius 2.9 m), and a drivable one.
 [[nodiscard]] SpmHorizonShape probe_horizon(const SpmExperimentOptions& options);
 [[nodiscard]] SpmHorizonShape drivable_horizon(const SpmExperimentOptions& options);
 
@@ -52,7 +52,7 @@ struct SpmMapRun {
   double kl_all_end = 0.0;
   double worst_class_error = 0.0;  ///< largest error of a class mean at the end
   bool locked = false;             ///< it is above 0.1
-  int rejected = 0;                ///< updates that a projection would have left its family by
+  int rejected = 0;                ///< updates rejected because a projection was not proper
   int refreshes = 0;
   SpmErrors probe, drivable;
 };
@@ -66,7 +66,7 @@ struct SpmMapRun {
                                 const SpmMethod& method,
                                 std::uint64_t index);
 
-/// Plays the first `until_m` metres of a record through a map.
+/// Updates a map with the first `until_m` metres of a record.
 void play(const SpmRecord& record, const SpmMethod& method, double until_m, PropertyMapper& mapper);
 
 /// The horizon's places from `s0_m` on.

@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-// The gain of each improvement beyond [SPM], measured alone.
+// Studies that measure the gain of each improvement beyond [SPM] alone.
 
-/// The default with one thing taken away (or changed) at a time.
+/// The default with one part removed (or changed) at a time.
 [[nodiscard]] std::vector<SpmMethod> spm_ablation_methods();
 
 /// Labels from a segmentation with a confusion matrix, in a world where every knot has one class.
@@ -20,8 +20,9 @@ struct SpmLabelScore {
   double class_nll = 0.0;   ///< -log probability of the true class, mean over the knots
   double class_ece = 0.0;   ///< expected calibration error of the best class, ten bins
   double mean_error = 0.0;  ///< mean |error| of the predicted friction
-  /// Two drives with independent errors, z = difference of a share / predicted deviation: 1 and
-  /// 0.05 where the counts are honest. 0 for discrete classes, which predict none.
+  /// For two drives with independent errors, z = difference of a class share over its predicted
+  /// standard deviation. Calibrated counts give a standard deviation of 1, and 0.05 outside the 95
+  /// % interval. 0 for discrete classes, which predict no deviation.
   double z_sd = 0.0;
   double z_outside95 = 0.0;
 };
@@ -29,7 +30,7 @@ struct SpmLabelScore {
                                                          int maps,
                                                          int num_threads);
 
-/// A wet class that dries, and one that stays: mean |error| of its mean at 40 Hz.
+/// Mean |error| of a class mean at 40 Hz, for a wet class that dries and for one that stays wet.
 struct SpmForgettingScore {
   double half_life_values = 0.0;  ///< 0: never forgets
   double drying_error = 0.0;      ///< 0.45 to 0.85 with a time constant of 120 s
@@ -37,7 +38,7 @@ struct SpmForgettingScore {
 };
 [[nodiscard]] std::vector<SpmForgettingScore> spm_forgetting_study(std::uint64_t seed);
 
-/// Gross outliers: this share of the friction values is anything in the plausible range.
+/// Result with gross outliers: `share` of the friction values are uniform in the plausible range.
 struct SpmOutlierScore {
   double outlier_weight = 0.0;
   double share = 0.0;

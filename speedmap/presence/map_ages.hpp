@@ -25,8 +25,8 @@ struct AgedItem {
   std::int64_t date_ns = 0;  ///< since 1970
   double half_life_s = 0.0;  ///< 0: never fades
 
-  /// By half-life: a minute or less is dynamic, an hour semi-dynamic, a week semi-static; what
-  /// lasts longer, or for ever, is static.
+  /// By half-life: up to a minute dynamic, up to an hour semi-dynamic, up to a week semi-static;
+  /// longer, or never fading, static.
   [[nodiscard]] AgeLayer layer() const;
   /// 1 when new, halved with every half-life; 1 for items dated after `now_ns`.
   [[nodiscard]] double weight(std::int64_t now_ns) const;
@@ -37,8 +37,8 @@ struct AgedItem {
 /// Items by layer, static first, in the order they were added within a layer.
 class AgedLayers {
  public:
-  /// Adds the item, or renews the one of that name. Throws InvalidOption for a half-life that is
-  /// negative or not finite.
+  /// Adds the item, or replaces the item of the same name. Throws InvalidOption for a half-life
+  /// that is negative or not finite.
   void put(const AgedItem& item);
   [[nodiscard]] const AgedItem* find(const std::string& name) const;
   [[nodiscard]] std::vector<AgedItem> of(AgeLayer layer) const;

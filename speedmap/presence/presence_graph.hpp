@@ -6,16 +6,17 @@
 
 namespace roadbook {
 
-// The graph of [metric-semantic maps, figure 5]: places x_i of the map, each with its prior x_i0,
-// smoothness edges between neighbours, and observations z.
+// The graph of [metric-semantic maps, figure 5]: locations x_i of the map, each with its prior
+// x_i0, smoothness edges between neighbours, and observations z.
 //
-// Minus the logarithm of (1) to (3), with weights and units, every edge once:
+// The energy is minus the logarithm of equations (1) to (3), with weights and units, every edge
+// once:
 //   E(x) = 1/2 sum_i w0_i (x_i - x_i0)^2 + 1/2 sum_(i,j) ws_ij (x_i - x_j)^2
 //        + 1/2 sum_k wz_k (z_k - x_i(k))^2
-// x is the probability that somebody is met at the place during a visit: no unit. Weights are
-// inverse variances: no unit either.
+// x is the probability that a person is met at the location during a visit. Weights are inverse
+// variances. Both have no unit.
 
-/// What kind of place a node is: the document's prior goes by it.
+/// Class of a location, on which the prior of the paper depends.
 enum class PlaceClass : std::uint8_t { kCrossing, kSpace, kLane, kOther };
 constexpr std::size_t kPlaceClasses = 4;
 [[nodiscard]] const char* to_text(PlaceClass place);
@@ -31,7 +32,7 @@ struct PresenceEdge {
   double weight = 1.0;  ///< ws, 0 or more
 };
 
-/// z at a node; several at one node add up.
+/// An observation z at a node; several at one node add up.
 struct PresenceObservation {
   int node = 0;
   double value = 0.0;   ///< 1: a person was there, 0: no person
@@ -42,8 +43,9 @@ struct PresenceGraph {
   std::vector<PresenceNode> nodes;
   std::vector<PresenceEdge> edges;
 
-  /// Throws InvalidOption: no nodes, a prior outside 0 to 1, weights that are not finite, negative
-  /// or (of a prior) 0, an edge of a node with itself or one that is not there, an edge twice.
+  /// Throws InvalidOption if there are no nodes, a prior is outside 0 to 1, a weight is not finite
+  /// or negative (or 0 for a prior), an edge joins a node with itself or with a missing node, or an
+  /// edge occurs twice.
   void check() const;
 };
 

@@ -22,7 +22,7 @@ struct PlacePrior {
 
 struct PresenceOptions {
   double cell_m = 0.5;
-  double beside_m = 6.0;  ///< lanes' surroundings that belong to the map, from the centre line
+  double beside_m = 6.0;  ///< ground within this distance of a lane's centre line has cells
   /// By PlaceClass: crossing, space, lane, other.
   std::array<PlacePrior, kPlaceClasses> priors{{{0.30}, {0.08}, {0.03}, {0.05}}};
   /// Range of the correlation between places: the effect of presence at one place on another place
@@ -53,8 +53,9 @@ struct PresenceValue {
 /// Cells of the map and the graph over them. Immutable.
 class PresenceGrid {
  public:
-  /// Crossings come before spaces, spaces before lanes where they overlap. Throws InvalidOption,
-  /// also where there are no cells or more than 2^27.
+  /// Where areas overlap, the cell gets the class of the crossing, else of the space, else of the
+  /// lane. Positions in the map frame [m]. Throws InvalidOption, also for no cells or more than
+  /// 2^27.
   PresenceGrid(const std::vector<GridLane>& lanes,
                const std::vector<Outline>& spaces,
                const std::vector<Outline>& crossings,
@@ -65,13 +66,15 @@ class PresenceGrid {
   [[nodiscard]] PlaceClass place_class(std::size_t node) const { return classes_[node]; }
   [[nodiscard]] const PresenceOptions& options() const { return options_; }
 
-  /// Weights go with a cell's area, so that the result does not depend on `cell_m`.
+  /// The graph over the cells. Weights are proportional to a cell's area, so that the result does
+  /// not depend on `cell_m`.
   [[nodiscard]] PresenceGraph graph() const;
-  /// The cell that holds the point; none where the map has no place.
+  /// The node of the cell that contains the point; empty if no cell does.
   [[nodiscard]] std::optional<int> node_at(const Eigen::Vector2d& p) const;
   /// Nodes whose centres lie within `radius_m` of the point, ascending; written to `nodes`.
   void nodes_near(const Eigen::Vector2d& p, double radius_m, std::vector<int>& nodes) const;
-  /// The cells' lattice: `node` of a column and row counted from `low`, -1 where no cell is.
+  /// The lattice of the cells: `node` of a column and row, counted from the corner `low` [m]; -1 if
+  /// there is no cell.
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] const Eigen::Vector2d& low() const { return low_; }

@@ -10,8 +10,8 @@
 namespace roadbook {
 
 struct PresenceUpdate {
-  std::size_t solved = 0;    ///< places solved for; all of them where it did not pay to do fewer
-  double error_bound = 0.0;  ///< no place is farther than this from the solution of the whole
+  std::size_t solved = 0;    ///< nodes solved for; all of them if a window would cost more
+  double error_bound = 0.0;  ///< largest difference of a node from the solution of the whole graph
 };
 
 /// The dynamic map [metric-semantic maps, section V-C]: the x that minimises E(x) of a
@@ -21,29 +21,31 @@ struct PresenceUpdate {
 /// observations. Deterministic: one thread. Const members may run concurrently.
 class PresenceMap {
  public:
-  /// Without observations; x is solved for. Throws InvalidOption.
+  /// Starts without observations and solves for x. Throws InvalidOption.
   explicit PresenceMap(PresenceGraph graph);
-  /// Begins from an earlier solution, a value a node, without solving: `add`, then `resume`.
+  /// Starts from an earlier solution (a value for each node), without solving. Call `add`, then
+  /// `resume`.
   PresenceMap(PresenceGraph graph, Eigen::VectorXd earlier);
 
-  /// Takes the observations up; x follows with `solve` or `update`. Throws BadInput for a node that
-  /// does not exist, a value outside 0 to 1 or a weight that is negative or not finite; the map is
-  /// then unchanged.
+  /// Adds observations; call `solve` or `update` to compute x. Throws BadInput for a node that does
+  /// not exist, a value outside 0 to 1 or a weight that is negative or not finite; the map is then
+  /// unchanged.
   void add(std::span<const PresenceObservation> observations);
 
-  /// Solves for all places: CHOLMOD, supernodes.
+  /// Solves for all nodes (CHOLMOD, supernodal).
   void solve();
-  /// Solves around what was added since the last time: a window about it with the rest held, wider
-  /// until the residual at its border proves that no place of the whole is off by more than
-  /// `tolerance` (the bounds of successive updates add up; `solve` sets them back to 0).
+  /// Solves in a window around the observations added since the last call, with the other nodes
+  /// held fixed. Widens the window until the residual at its border proves that no node is wrong by
+  /// more than `tolerance`. The bounds of successive updates add up; `solve` resets them to 0.
   PresenceUpdate update(double tolerance = 1e-6);
 
-  /// Solves where the earlier solution does not hold any more, and around there, as `update` does.
+  /// Solves in a window around the nodes where the earlier solution has a residual, as `update`
+  /// does.
   PresenceUpdate resume(double tolerance = 1e-6);
 
   [[nodiscard]] const Eigen::VectorXd& presence() const { return x_; }
-  /// Posterior variance of every place, given the others are free: diagonal of the inverse, from
-  /// the entries of the inverse within the factor's pattern alone (Takahashi 1973).
+  /// Marginal posterior variance of every node: the diagonal of the inverse, from its entries
+  /// within the sparsity pattern of the factor (Takahashi 1973).
   [[nodiscard]] Eigen::VectorXd variances() const;
 
   [[nodiscard]] std::size_t size() const { return graph_.nodes.size(); }

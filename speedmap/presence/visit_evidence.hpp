@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-// Evidence of one visit for each place: a person was met there, or the place was in sight and
-// empty. The source uses detections alone. Then a place that was seen empty a hundred times is as
-// dangerous as a place that was never seen.
+// Evidence of one visit for each location: a person was met there, or the location was in sight and
+// empty. The paper uses detections only. With detections only, a location that was seen empty a
+// hundred times is as dangerous as one that was never seen.
 
 /// A person seen from one pose.
 struct SeenPerson {
@@ -18,14 +18,14 @@ struct SeenPerson {
   double probability = 1.0;  ///< that it is a person
 };
 
-/// One look around.
+/// One instant at which the cameras searched for people.
 struct VisitFrame {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< of the vehicle [m, map frame]
   double duration_s = 0.0;                             ///< until the next one
   std::vector<SeenPerson> people;
   double heading = 0.0;  ///< of the vehicle [rad]; for `reach_m`
-  /// How far the ground was in sight, in equal sectors counter-clockwise from the heading [m].
-  /// Empty: out to the range of the options, where no blocker stands.
+  /// Visible range of the ground, in equal sectors counter-clockwise from the heading [m]. Empty:
+  /// the range of the options, limited by the blockers.
   std::vector<double> reach_m{};
 };
 
@@ -39,10 +39,10 @@ struct SightBlocker {
 void add_sides(const Outline& outline, std::vector<SightBlocker>& blockers);
 
 struct SightOptions {
-  double range_m = 12.0;  ///< people are found out to here
-  double person_m = 1.0;  ///< a place this near to somebody's feet is taken; sigma comes to it
-  /// A look of this long tells 63 % of what a visit can tell: what is seen in successive frames is
-  /// the same people.
+  double range_m = 12.0;  ///< people are detected up to this range
+  double person_m = 1.0;  ///< radius around a foot point that counts as occupied, plus its sigma
+  /// Time in sight that gives 63 % of the weight of a visit. Successive frames are not independent,
+  /// because they show the same people.
   double look_s = 1.0;
 
   /// Throws InvalidOption.
@@ -50,10 +50,10 @@ struct SightOptions {
 };
 
 struct VisitEvidence {
-  std::vector<double> seen_s;      ///< by node: how long it was in sight
-  std::vector<double> person_s;    ///< how long a person was seen there, times probability
-  std::size_t people = 0;          ///< sightings used
-  std::size_t people_off_map = 0;  ///< where the map has no place
+  std::vector<double> seen_s;      ///< by node: time in sight
+  std::vector<double> person_s;    ///< by node: time with a person there, times probability
+  std::size_t people = 0;          ///< detections used
+  std::size_t people_off_map = 0;  ///< detections where the map has no cell
 };
 
 /// True where no blocker lies between the two points.
@@ -61,19 +61,20 @@ struct VisitEvidence {
                             const Eigen::Vector2d& to,
                             const std::vector<SightBlocker>& blockers);
 
-/// Sums up a visit. Throws InvalidOption, and BadInput for a person whose position is not finite,
-/// whose sigma is negative or whose probability is outside 0 to 1.
+/// Sums up the evidence of a visit. Throws InvalidOption, and BadInput for a person with a position
+/// that is not finite, a negative sigma or a probability outside 0 to 1.
 [[nodiscard]] VisitEvidence gather_evidence(const PresenceGrid& grid,
                                             const std::vector<VisitFrame>& frames,
                                             const std::vector<SightBlocker>& blockers,
                                             const SightOptions& options);
 
-/// The visit as observations z, worth `weight` of a fresh one (its age: map_ages.hpp). z = 1 where
-/// a person was, with the share w = 1 - exp(-person_s / look_s) of a visit's full weight. z = 0
-/// with the share (1 - w)(1 - exp(-seen_s / look_s)). A visit never weighs more than one visit.
+/// Converts a visit to observations z with the factor `weight` for its age (map_ages.hpp). z = 1 at
+/// a node with a person has the share w = 1 - exp(-person_s / look_s) of the full weight of a
+/// visit. z = 0 has the share (1 - w)(1 - exp(-seen_s / look_s)). The two shares never exceed one
+/// visit.
 ///
-/// With the grid's `literal` option: z = 1 with weight 1 for every sighting at its cell, nothing
-/// else; only this option reads `frames`.
+/// With the grid's `literal` option: z = 1 with weight 1 for every detection at its cell, and no
+/// other observation; only this option reads `frames`.
 [[nodiscard]] std::vector<PresenceObservation> observations_of(
     const PresenceGrid& grid,
     const VisitEvidence& evidence,

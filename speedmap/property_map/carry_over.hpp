@@ -7,7 +7,8 @@
 
 namespace roadbook {
 
-/// Where a place of the old path lies in the coordinates of the new one; empty outside its tube.
+/// Converts a position in coordinates of the old path to those of the new path; empty outside the
+/// tube of the new path.
 using PlaceMove = std::function<std::optional<PathPlace>(const PathPlace&)>;
 
 struct CarriedMap {
@@ -15,11 +16,11 @@ struct CarriedMap {
   std::size_t dropped = 0;  ///< knots that lie outside the new path's tube
 };
 
-/// The map after its path has moved (the metric map was optimised again, or a lane was fitted
-/// again). Every knot keeps its belief and moves to the new coordinates of its ground.
-/// Nothing is smoothed and no label is lost or counted twice; the knots are then no regular grid.
+/// Moves a map to a new path, after the metric map was optimised or a lane was fitted again. Every
+/// knot keeps its belief and gets the coordinates of its ground on the new path. Nothing is
+/// smoothed, and no label is lost or counted twice. The knots then no longer form a regular grid.
 ///
-/// `period_m`: length of a new closed path. Throws Refused where no knot is left.
+/// `period_m`: length of the new path if it is closed. Throws Refused if no knot is left.
 [[nodiscard]] CarriedMap carry_over(const PropertyMap& map,
                                     const PlaceMove& move,
                                     std::optional<double> period_m = std::nullopt);

@@ -8,9 +8,9 @@
 
 namespace roadbook {
 
-// Gaussian-process regression over path coordinates with a squared-exponential kernel (its own
-// length along and across) and noise: the baseline that the property map is compared with. Cost
-// O(n^3); for some hundreds of values.
+// Gaussian-process regression over path coordinates: the baseline for the property map. The kernel
+// is squared-exponential with different lengths along and across, plus noise. Cost O(n^3), for some
+// hundreds of values.
 
 struct GaussianProcessOptions {
   int starts = 2;       ///< of the search for hyper-parameters: short and long
@@ -55,9 +55,9 @@ class GaussianProcess {
   double log_likelihood_ = 0.0;
 };
 
-/// A constant that wanders: Kalman filter with the property as its state and a random walk of
-/// `walk` per measurement. The estimate after all values, which is also the prediction for any
-/// place ahead.
+/// Kalman filter of a property that does not depend on the position, with a random walk of `walk`
+/// (standard deviation) per measurement. The estimate after all values is also the prediction for
+/// any position ahead.
 struct KalmanEstimate {
   double mean = 0.0;
   double variance = 0.0;  ///< of the state

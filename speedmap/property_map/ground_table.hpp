@@ -13,23 +13,23 @@
 
 namespace roadbook {
 
-// Class images into a property map, faster than a pixel at a time: where a pixel meets the ground
-// is computed once per camera; a frame then only counts the labels in each cell of ground and adds
-// each cell as one place.
+// Adds class images to a property map. The ground point of each pixel is computed once for each
+// camera. For each frame, only the labels in each cell of ground are counted, and each cell is
+// added as one position.
 //
-// How much a frame is worth: neighbouring pixels and successive frames repeat the segmentation's
-// errors, so that pixels must not be counted as independent labels. Labels are therefore
-// counted by ground, not by pixels: `labels_per_m2` independent labels for a square metre seen over
-// a metre of travel. That does not depend on resolution, frame rate or speed; 0.6 keeps the map's
-// class uncertainty honest for errors that persist over 3 x 1 m of ground and 10 m of travel
-// (docs/guide/friction.md has the measurement; `roadbook evaluate spm` repeats it).
+// Weight of a frame: neighbouring pixels and successive frames repeat the errors of the
+// segmentation, so that pixels are not independent labels. Labels are therefore counted by ground,
+// not by pixels: `labels_per_m2` independent labels for a square metre seen over a metre of travel.
+// This does not depend on resolution, frame rate or speed. A value of 0.6 gives a calibrated class
+// uncertainty for errors that persist over 3 x 1 m of ground and 10 m of travel
+// (docs/results/friction.md; `roadbook evaluate spm` repeats the measurement).
 
 struct GroundTableOptions {
   double cell_m = 0.5;  ///< of ground, in the vehicle frame; half the knot spacing
   double ahead_min_m = -60.0;
   double ahead_max_m = 60.0;
   double aside_max_m = 15.0;
-  int pixel_step = 1;          ///< every how many pixels, in both directions
+  int pixel_step = 1;          ///< uses every n-th pixel in both directions
   GroundPlane plane;           ///< in the vehicle frame
   double labels_per_m2 = 0.6;  ///< per metre travelled
 
@@ -50,9 +50,9 @@ class GroundTable {
   [[nodiscard]] std::size_t pixels() const { return cell_of_.size(); }
   [[nodiscard]] const GroundTableOptions& options() const { return options_; }
 
-  /// Labels in each cell, cells x classes. `classes`: the class image, rows `row_bytes` apart;
-  /// values from `num_classes` on (no class, ego vehicle) are left out and counted in the return
-  /// value.
+  /// Counts the labels in each cell; `counts`: cells x classes. `classes`: the class image, rows
+  /// `row_bytes` apart. Values from `num_classes` on (no class, ego vehicle) are left out; returns
+  /// their number.
   std::size_t count(const std::uint8_t* classes,
                     std::size_t row_bytes,
                     std::size_t num_classes,
@@ -69,8 +69,8 @@ class GroundTable {
 /// Vehicle frame to path coordinates; empty outside the map.
 using GroundToPath = std::function<std::optional<PathPlace>(const Eigen::Vector2d&)>;
 
-/// Adds a frame's counts to the map, worth what was travelled since the last one [m].
-/// Returns the number of cells used.
+/// Adds the counts of a frame to the map. `travelled_m`: distance since the last frame, to which
+/// the weight of the labels is proportional. Returns the number of cells used.
 std::size_t add_frame(PropertyMap& map,
                       const GroundTable& table,
                       std::span<const std::uint32_t> counts,

@@ -8,10 +8,10 @@
 
 namespace roadbook {
 
-// Normalised interpolation I_v^l [SPM, eq. 6]: the share of each knot in the value at a
-// place.
+// Normalised interpolation I_v^l [SPM, eq. 6]: the share of each knot in the value at a position.
 
-/// The knots of one place and their shares. Reuse one object over many places: it keeps its memory.
+/// The knots near one position and their shares. Reuse one object for many positions: it keeps its
+/// memory.
 struct Interpolation {
   std::vector<std::int32_t> knots;
   std::vector<double> weights;  ///< I_v^l > 0; their sum is 1
@@ -27,11 +27,11 @@ struct InterpolationDerivatives {
   std::vector<Eigen::Matrix2d> hessians;
 };
 
-/// Shares at `v`; not covered (no knots) where no knot lies within its kernel width, since (6) is
-/// 0/0 there.
+/// Computes the shares at `v`. The result is not covered (has no knots) if no knot is within its
+/// kernel width of `v`, where equation 6 is 0/0.
 void interpolate(const Knots& knots, const PathPlace& v, Interpolation& result);
 
-/// The same with derivatives: grad I = (grad K - I sum grad K) / S, and once more.
+/// The same with first and second derivatives: grad I = (grad K - I sum grad K) / S.
 void interpolate(const Knots& knots,
                  const PathPlace& v,
                  Interpolation& result,

@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-// Inverse perspective mapping: pixel to point on the ground, for any camera model [SPM, eq. 4,
-// corrected: x = t + l R d with l = n.(r - t) / (n.R d); as printed the camera's place
-// is scaled with the ray and every pixel maps to the origin of a ground at z = 0].
+// Inverse perspective mapping: pixel to point on the ground, for any camera model [SPM, eq. 4]. The
+// equation is corrected to x = t + l R d with l = n.(r - t) / (n.R d). As printed, the camera's
+// position is scaled with the ray, and every pixel maps to the origin of a ground at z = 0.
 
 /// Points x with normal . x = normal . point; the normal need not be of unit length.
 struct GroundPlane {
@@ -25,28 +25,29 @@ struct RayHit {
   [[nodiscard]] bool valid() const { return lambda > 0.0; }
 };
 
-/// `ray_camera`: direction in the camera frame, of any length. A ray along the plane gives lambda
-/// that is not finite (and not valid).
+/// Intersects a ray with a plane. `ray_camera`: direction in the camera frame, of any length. A ray
+/// parallel to the plane gives a lambda that is not finite (and not valid).
 [[nodiscard]] RayHit hit_plane(const Eigen::Vector3d& ray_camera,
                                const Eigen::Isometry3d& T_world_camera,
                                const GroundPlane& plane);
 
-/// The point of the plane seen in `pixel`: none for a pixel outside the camera model's domain, and
-/// for one that looks above the horizon.
+/// The point of the plane that `pixel` shows, in the world frame. Empty for a pixel outside the
+/// domain of the camera model or above the horizon.
 [[nodiscard]] std::optional<Eigen::Vector3d> ground_point(const Camera& camera,
                                                           const Eigen::Isometry3d& T_world_camera,
                                                           const GroundPlane& plane,
                                                           const Eigen::Vector2d& pixel);
 
-/// How the ground point moves with the pixel: d point / d (u, v) [m/px], from the model's own
-/// Jacobian; its determinant is the ground area of a pixel. `point` is one given by `ground_point`.
+/// Derivative of the ground point by the pixel: d point / d (u, v) [m/px], from the Jacobian of the
+/// camera model. Its determinant is the ground area of a pixel. `point`: a result of
+/// `ground_point`.
 [[nodiscard]] std::optional<Eigen::Matrix<double, 3, 2>> ground_jacobian(
     const Camera& camera,
     const Eigen::Isometry3d& T_world_camera,
     const GroundPlane& plane,
     const Eigen::Vector3d& point);
 
-/// (4) as printed, for comparison: both defects in one.
+/// Equation 4 as printed, with its defects, for comparison.
 [[nodiscard]] Eigen::Vector3d literal_ground_point(const Eigen::Vector3d& ray_camera,
                                                    const Eigen::Isometry3d& T_world_camera,
                                                    const GroundPlane& plane);

@@ -6,8 +6,8 @@
 
 namespace roadbook {
 
-/// A place in path coordinates; e positive to the left (roadnet/paths/path_sign.hpp for the
-/// document's).
+/// A position in path coordinates; e is positive to the left (the paper uses the opposite sign:
+/// roadnet/paths/path_sign.hpp).
 struct PathPlace {
   double s_m = 0.0;
   double e_m = 0.0;
@@ -15,15 +15,15 @@ struct PathPlace {
 
 /// Reach of a knot along and across the path: D of the kernel (7), scaled separately.
 ///
-/// At least two knot spacings: below, the gradient of the interpolation swings between the knots
-/// (at 1.5 spacings a linear function's slope is 0.47 to 1.60 of the true one, at 2 it is 0.98 to
-/// 1.02).
+/// It is at least two knot spacings. With less, the gradient of the interpolation oscillates
+/// between the knots: at 1.5 spacings the slope of a linear function is 0.47 to 1.60 of the true
+/// one, at 2 spacings 0.98 to 1.02.
 struct KernelWidth {
   double s_m = 2.0;
   double e_m = 2.0;
 };
 
-/// A part of s that closes upon itself: [begin, begin + length).
+/// A part of s that is a ring: [begin, begin + length).
 struct KnotRing {
   double begin_m = 0.0;
   double length_m = 0.0;
@@ -43,15 +43,17 @@ struct KnotGridOptions {
   void check() const;
 };
 
-/// The knots v_l of a map and where to find those near a place: cells of half a kernel width in a
-/// table, so that the cost of a query depends on the kernel's support and not on L. Immutable.
+/// The knots v_l of a map, with an index that finds those near a position. Its cells are half a
+/// kernel width, so that the cost of a query depends on the kernel's support and not on the number
+/// of knots L. Immutable.
 class Knots {
  public:
-  /// `period_m`: length of a closed path; s is then taken around the ring. Throws InvalidOption for
-  /// no knots, values that are not finite, and a ring shorter than four kernel widths.
+  /// `period_m`: length of a closed path, around which s is wrapped. Throws InvalidOption for no
+  /// knots, values that are not finite, and a ring shorter than four kernel widths.
   Knots(std::vector<PathPlace> places, const KernelWidth& width, std::optional<double> period_m);
-  /// Several paths after each other along s, some of them rings: what lies between the parts must
-  /// be wider than three kernel widths. Throws InvalidOption, also for rings shorter than four.
+  /// Several paths after each other along s, some of them rings. The gaps between them must be
+  /// wider than three kernel widths. Throws InvalidOption, also for rings shorter than four kernel
+  /// widths.
   Knots(std::vector<PathPlace> places, const KernelWidth& width, std::vector<KnotRing> rings);
 
   static Knots grid(const KnotGridOptions& options);
@@ -61,7 +63,7 @@ class Knots {
   [[nodiscard]] const KernelWidth& width() const { return width_; }
   [[nodiscard]] const std::optional<double>& period_m() const { return period_m_; }
 
-  /// The ring that holds s (all of s where the knots are one ring); none on an open path.
+  /// The ring that contains s (any s if all knots are one ring); null on an open path.
   [[nodiscard]] const KnotRing* ring_at(double s_m) const;
 
   /// s - s', the shorter way round on a ring.

@@ -11,11 +11,11 @@
 
 namespace roadbook {
 
-/// All lanes of a map in one property map, so that they share the classes: lane after lane along s,
-/// farther apart than the kernel reaches. A ring closes upon itself.
+/// The layout of all lanes of a map in one property map, so that they share the classes. Lanes
+/// follow each other along s, farther apart than the kernel reaches. A closed lane is a ring.
 class LaneStrips {
  public:
-  /// Lanes without a path are left out; throws Refused where none is left.
+  /// Lanes without a path are left out. Throws Refused if none is left.
   LaneStrips(const std::vector<LanePath>& lanes, double spacing_m, double kernel_width_m);
 
   struct Strip {
@@ -33,11 +33,11 @@ class LaneStrips {
   /// With a kernel of another width.
   [[nodiscard]] Knots knots_at(std::vector<PathPlace> places, const KernelWidth& width) const;
 
-  /// Places of a point of the map frame in all the lanes whose tube holds it.
+  /// Path coordinates of a point (map frame [m]) in all lanes whose tube contains it.
   void places_of(const Eigen::Vector2d& p, std::vector<PathPlace>& places) const;
-  /// Strip that holds a place of the property map.
+  /// The strip that contains a position of the property map.
   [[nodiscard]] const Strip& strip_of(const PathPlace& place) const;
-  /// The strip of a lane; null where it has none.
+  /// The strip of a lane; null if it has none.
   [[nodiscard]] const Strip* find(std::uint64_t lane) const;
 
  private:

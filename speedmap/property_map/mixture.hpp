@@ -23,8 +23,8 @@ struct MixtureOptions {
   double outlier_density = 0.0;  ///< 1 / width of the plausible range
 };
 
-/// `weights`: I_l of the L knots near; `shares`: their u^l, L x K. All in logarithms: no under- or
-/// overflow for any y. Reuse `result`: it keeps its memory.
+/// Computes the posterior. `weights`: I_l of the L knots nearby. `shares`: their u^l, L x K. Works
+/// with logarithms, so that no y causes under- or overflow. Reuse `result`: it keeps its memory.
 void mixture_posterior(double y,
                        std::span<const double> weights,
                        std::span<const double> shares,

@@ -6,20 +6,20 @@
 
 namespace roadbook {
 
-// Measurements with a known noise in addition to the variance of their class. A sensor sees a
-// class of variance Q as one of variance Q + sigma^2, and k = Q / (Q + sigma^2) is what a
-// measurement is worth for the mean, k^2 for the variance (Fisher information).
+// Measurements with a known noise of the sensor in addition to the variance within their class. The
+// sensor sees a class of variance Q as one of variance Q + sigma^2. With k = Q / (Q + sigma^2), a
+// measurement counts k for the mean and k^2 for the variance (Fisher information).
 
-/// The class as the sensor sees it: the same mean with the same uncertainty, a wider scatter.
+/// The class as the sensor sees it: the same mean with the same uncertainty, a larger variance.
 [[nodiscard]] inline NormalGamma as_sensed(const NormalGamma& ng, double sigma) {
   if (sigma == 0.0) return ng;
   const double grow = 1.0 + sigma * sigma / ng.expected_variance();
   return {ng.mu, ng.lambda * grow, ng.alpha, ng.beta * grow};
 }
 
-/// Belief about the ground after an update took as_sensed(before) to `sensed`. For a well known
-/// variance this is the Kalman update of the mean. Q falls by no more than half at once, so that it
-/// stays above 0 for any stated noise of the sensor.
+/// Belief about the ground after an update changed as_sensed(before) to `sensed`. For a well known
+/// variance this is the Kalman update of the mean. Q falls by at most half in one update, so that
+/// it stays above 0 for any stated `sigma`.
 [[nodiscard]] inline NormalGamma of_the_ground(const NormalGamma& before,
                                                const NormalGamma& sensed,
                                                double sigma) {

@@ -26,12 +26,12 @@ struct NormalGamma {
   void check(const std::string& name) const;
 };
 
-/// Belief after a measurement that is known to be of this class (12a, 12b).
+/// Belief after a measurement that is known to be of this class [SPM, eq. 12a, 12b].
 [[nodiscard]] NormalGamma conjugate_update(const NormalGamma& prior, double y);
 
-/// Logarithm of the Student t density of the next measurement: c_j of (12c) with the gamma ratio
-/// outside the root. `literal_root` takes the printed formula, ratio inside (too small by about
-/// alpha^(1/4)).
+/// Logarithm of the Student t density of the next measurement: c_j of [SPM, eq. 12c] with the gamma
+/// ratio outside the root. `literal_root`: the printed formula with the ratio inside (too small by
+/// about alpha^(1/4)).
 [[nodiscard]] double log_marginal(const NormalGamma& prior, double y, bool literal_root = false);
 
 /// log Gamma(x + 1/2) - log Gamma(x), without the cancellation of the difference at large x.

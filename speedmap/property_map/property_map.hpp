@@ -12,11 +12,12 @@
 
 namespace roadbook {
 
-/// Mean and variance of the next measurement at a place, and how they change along it.
+/// Mean and variance of the next measurement at a position.
 struct PropertyMoments {
   double mean = 0.0;
   double variance = 0.0;
 };
+/// The same with first and second derivatives in (s, e).
 struct PropertyMomentsDerivatives : PropertyMoments {
   Eigen::Vector2d d_mean = Eigen::Vector2d::Zero();  ///< d / ds, d / de
   Eigen::Vector2d d_variance = Eigen::Vector2d::Zero();
@@ -27,20 +28,20 @@ struct PropertyMomentsDerivatives : PropertyMoments {
 enum class PropertyUpdate {
   kDone,
   kUncovered,          ///< no knot near
-  kTooLittleEvidence,  ///< the gate: too few labels seen there
-  kRejected,           ///< a projection that is not kPredictive left its family; map unchanged
+  kTooLittleEvidence,  ///< fewer labels there than `gate_counts`; map unchanged
+  kRejected,           ///< the projected result was not proper; map unchanged
 };
 
-/// What one property measurement did.
+/// The effect of one property measurement.
 struct PropertyUpdateResult {
   PropertyUpdate status = PropertyUpdate::kDone;
   double log_evidence = 0.0;  ///< log p(y) before the update, outlier component included
   double inlier = 1.0;        ///< probability that some class explains it
 };
 
-/// A semantic property map [SPM, section 3]: knots in path coordinates, each with a belief
-/// about its class (Dirichlet, or one class with kDiscrete), and for every property one
-/// normal-gamma per class that all knots share.
+/// A semantic property map [SPM, section 3]. Each knot in path coordinates has a belief about its
+/// class (Dirichlet proportions, or one class with kDiscrete). For every property, all knots share
+/// one normal-gamma for each class.
 ///
 /// Updates cost O(knots near x classes). Not for concurrent change; const members may run
 /// concurrently. Deterministic.
@@ -54,29 +55,28 @@ class PropertyMap {
   [[nodiscard]] const PropertyMapOptions& options() const { return options_; }
   [[nodiscard]] std::size_t classes() const { return prior_.classes.size(); }
 
-  /// A label of class `label` at `v`, worth `weight` independent labels (docs/guide/friction.md:
-  /// how much one pixel is worth). Returns false where no knot is near. Throws BadInput for a class
-  /// that does not exist, a place that is not finite or a weight below 0; the map is then
-  /// unchanged.
+  /// Adds a label of class `label` at `v` that counts as `weight` independent labels (for pixels
+  /// see ground_table.hpp). Returns false if no knot is near. Throws BadInput for a class that does
+  /// not exist, a position that is not finite or a weight below 0; the map is then unchanged.
   bool add_label(const PathPlace& v, int label, double weight = 1.0);
-  /// Several labels at one place, `weights[c]` of class c: one interpolation for all of them.
+  /// Adds several labels at one position, `weights[c]` of class c, with one interpolation.
   bool add_labels(const PathPlace& v, std::span<const double> weights);
 
-  /// A measurement of property `property` at `v`. Throws BadInput for one outside the plausible
-  /// range, or not finite, or for a negative `sigma`; the map is then unchanged.
+  /// Adds a measurement of property `property` at `v`. Throws BadInput for one outside the
+  /// plausible range or not finite, and for a negative `sigma`; the map is then unchanged.
   ///
-  /// `sigma`: the sensor's own standard deviation. Variances of the classes are then those of the
-  /// ground alone, and a value counts as Q / (Q + sigma^2) of one, Q the variance within the class
+  /// `sigma`: standard deviation of the sensor. The variances of the classes are then those of the
+  /// ground only. The measurement counts Q / (Q + sigma^2), with the variance Q within the class
   /// (noisy_value.hpp).
   PropertyUpdateResult add_value(std::size_t property,
                                  const PathPlace& v,
                                  double y,
                                  double sigma = 0.0);
 
-  /// Lets `seconds` pass: what is known fades with the half-lives of the options.
+  /// Lets `seconds` pass: beliefs fade with the half-lives of the options.
   void forget(double seconds);
 
-  /// Empty where no knot is near.
+  /// Moments of the next measurement at `v`; empty if no knot is near.
   [[nodiscard]] std::optional<PropertyMoments> moments(std::size_t property,
                                                        const PathPlace& v) const;
   [[nodiscard]] std::optional<PropertyMomentsDerivatives> moments_with_derivatives(
@@ -100,7 +100,8 @@ class PropertyMap {
     return properties_[property];
   }
 
-  /// Sets what is known, for maps read back or carried over. Throws InvalidOption.
+  /// Sets the belief of a knot or the classes of a property, for maps that are read from a file or
+  /// carried over. Throws InvalidOption.
   void set_belief(std::size_t knot, std::span<const double> belief, double evidence);
   void set_property(std::size_t property, const std::vector<NormalGamma>& classes);
 

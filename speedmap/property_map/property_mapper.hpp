@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-// A property map that is kept while driving: the updates of `PropertyMap`, and now and then a batch
-// refresh of the classes from the log of what was measured (class_refresh.hpp).
+// A property map that is updated while driving: the updates of `PropertyMap`, and at intervals a
+// batch refresh of the classes from the stored measurements (class_refresh.hpp).
 
 struct RefreshOptions {
   bool enabled = true;
@@ -17,9 +17,9 @@ struct RefreshOptions {
   double early_until_m = 100.0;
   double early_every_m = 10.0;
   double every_m = 50.0;
-  /// A class that has gone wrong shows as measurements that the map finds improbable: a refresh is
-  /// due when the mean log evidence of the last `drop_values` is this much below the best such mean
-  /// since the last refresh [nat]. 0: off.
+  /// A wrong class makes measurements improbable. A refresh is due when the mean log evidence of
+  /// the last `drop_values` measurements is this much [nat] below the best such mean since the last
+  /// refresh. 0: off.
   double drop_nat = 1.0;
   int drop_values = 40;
   /// Oldest measurements are dropped beyond this many: bounds memory and time of a refresh.
@@ -37,14 +37,14 @@ class PropertyMapper {
   [[nodiscard]] PropertyMap& map() { return map_; }
   [[nodiscard]] const PropertyMap& map() const { return map_; }
 
-  /// As PropertyMap::add_value, and remembers the measurement.
+  /// As PropertyMap::add_value; also stores the measurement for refreshes.
   PropertyUpdateResult add_value(std::size_t property,
                                  const PathPlace& v,
                                  double y,
                                  double sigma = 0.0);
 
-  /// Tells how far the vehicle has come in all: refreshes where one is due. Returns whether one was
-  /// made.
+  /// Call with the total distance driven [m]: refreshes the classes if a refresh is due. Returns
+  /// whether it did.
   bool travelled(double distance_m);
   /// Refreshes the classes of every property now, from the class weights that the map has now.
   void refresh();

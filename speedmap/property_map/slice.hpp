@@ -11,17 +11,17 @@
 
 namespace roadbook {
 
-// A piece of a property map for a controller [SPM, section 3.5, "externalisation"]: the
-// knots around a horizon with their means and variances. It needs neither the map, nor the classes,
-// nor the path's geometry, and gives the same numbers as the map.
+// A part of a property map for a controller [SPM, section 3.5, "externalisation"]: the knots around
+// a horizon with their means and variances. It needs neither the map, nor the classes, nor the
+// path's geometry, and gives the same numbers as the map.
 
-/// Where a slice comes from: a consumer can refuse one that is too old or of another map.
+/// The origin of a slice. A consumer can refuse a slice that is too old or of another map.
 struct SliceSource {
   std::string map;           ///< name or digest of the map
   std::int64_t date_ns = 0;  ///< of the newest measurement in it
 };
 
-/// One knot of a slice: its own mean and variance (not yet interpolated), labels it has seen.
+/// One knot of a slice: its mean and variance (not interpolated) and the number of its labels.
 struct SliceKnot {
   double s_m = 0.0;
   double e_m = 0.0;
@@ -39,13 +39,12 @@ struct PropertySlice {
   double s_begin_m = 0.0;  ///< the slice equals the map for s in [s_begin, s_end]
   double s_end_m = 0.0;
   KernelWidth width;
-  std::optional<double>
-      period_m;  ///< closed path: s is taken around into [s_begin, s_begin + period)
-  std::vector<SliceKnot> knots;  ///< ascending s; beyond the seam s continues to grow
+  std::optional<double> period_m;  ///< closed path: s is wrapped to [s_begin, s_begin + period)
+  std::vector<SliceKnot> knots;  ///< by s, not wrapped: s ascends across the start of a closed path
   std::vector<std::string> classes;
   std::vector<double> shares;  ///< knots x classes: expected class proportions
 
-  /// Share of the knots that labels have been seen at.
+  /// Share of the knots that have labels.
   [[nodiscard]] double coverage() const;
   /// Digest of everything but the source.
   [[nodiscard]] std::string digest() const;
@@ -53,8 +52,8 @@ struct PropertySlice {
   void check(const std::string& file) const;
 };
 
-/// The slice of `map` for s in [s_begin, s_end]. Throws InvalidOption for an empty range, and one
-/// longer than the ring.
+/// Cuts the slice of `map` for s in [s_begin, s_end]. Throws InvalidOption for an empty range, and
+/// for one longer than the ring.
 [[nodiscard]] PropertySlice make_slice(const PropertyMap& map,
                                        std::size_t property,
                                        double s_begin_m,
@@ -67,7 +66,7 @@ class SliceView {
   explicit SliceView(const PropertySlice& slice);
   ~SliceView();
 
-  /// Empty outside [s_begin, s_end] and where no knot is near.
+  /// Moments at `v`; empty outside [s_begin, s_end] and if no knot is near.
   [[nodiscard]] std::optional<PropertyMoments> moments(const PathPlace& v) const;
   [[nodiscard]] std::optional<PropertyMomentsDerivatives> moments_with_derivatives(
       const PathPlace& v) const;
@@ -83,9 +82,9 @@ class SliceView {
 /// of the wrong kind, a digest that does not fit.
 [[nodiscard]] PropertySlice parse_slice(const std::string& text, const std::string& file);
 
-/// A header for C99 and C++ that needs <math.h> alone: `NAME_evaluate(s, e, out)` sets mean,
-/// variance and their derivatives in s and e. Throws InvalidOption for a name that is no
-/// identifier.
+/// Returns the text of a header for C99 and C++ that needs only <math.h>. Its function
+/// `NAME_evaluate(s, e, out)` sets mean, variance and their derivatives in s and e. Throws
+/// InvalidOption for a name that is no identifier.
 [[nodiscard]] std::string slice_header(const PropertySlice& slice, const std::string& name);
 
 }  // namespace roadbook

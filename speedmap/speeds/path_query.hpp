@@ -11,9 +11,9 @@
 
 namespace roadbook {
 
-// One question at (s, e) of a lane: how fast, how much grip, which lane, what kind of ground, with
-// gradients and variances. Presence and friction live on knots of the same path coordinates and are
-// interpolated by the same kernel, so a controller finds smooth functions of both.
+// A query at (s, e) of a lane: speed, grip and class of the ground, with gradients and variances.
+// Presence and friction are stored at knots in the same path coordinates and interpolated by the
+// same kernel, so both are smooth functions for a controller.
 
 /// A value at (s, e), its gradient there and its variance.
 struct SmoothValue {
@@ -35,12 +35,13 @@ struct PathAnswer {
   PlaceClass place = PlaceClass::kOther;  ///< label of the ground there
 };
 
-/// A lane with all that is known along it. Immutable; safe to share between threads.
+/// A lane with its speeds, presence and friction, prepared for queries. Immutable; safe to share
+/// between threads.
 class LaneQuery {
  public:
-  /// `presence` is sampled at knots over the lane's tube, `place` tells labels; `friction` (may be
-  /// null) is a property map over `strips` and must outlive the query, like them. Throws
-  /// InvalidOption for a lane that has no strip.
+  /// `presence` is sampled at knots over the lane's tube. `place` returns the class of the ground.
+  /// `friction` (may be null) is a property map over `strips`. `friction` and `strips` must outlive
+  /// the query. Throws InvalidOption for a lane that has no strip.
   LaneQuery(const LaneStrips& strips,
             const LaneProfile& profile,
             const PresenceAt& presence,
@@ -49,7 +50,7 @@ class LaneQuery {
             const LaneSpeedOptions& options,
             double knot_spacing_m = 1.0);
 
-  /// Empty outside the tube, beyond an open end, and for places that are not finite.
+  /// Empty outside the tube, beyond an open end, and for values that are not finite.
   [[nodiscard]] std::optional<PathAnswer> at(double s_m, double e_m) const;
 
  private:

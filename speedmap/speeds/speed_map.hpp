@@ -13,21 +13,21 @@
 
 namespace roadbook {
 
-/// A place of the dynamic map with all that is known of it. Speeds in m/s.
+/// A cell of the dynamic map with its presence and speeds [m/s].
 struct SpeedCell {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   PlaceClass place = PlaceClass::kOther;
   double prior = 0.0;
   double presence = 0.0;
-  double sigma = 0.0;       ///< of presence
-  double pedestrian = 0.0;  ///< recommended by presence
-  double grip = 0.0;        ///< by friction at its quantile; infinite where it is not known
-  double speed = 0.0;       ///< the lower of both, and of the law
+  double sigma = 0.0;       ///< standard deviation of presence
+  double pedestrian = 0.0;  ///< recommended speed by presence
+  double grip = 0.0;        ///< speed by friction at its quantile; infinite if unknown
+  double speed = 0.0;       ///< the lowest of both and of the speed limit
   double speed_sigma = 0.0;
-  double seen_s = 0.0;         ///< in sight, all visits
-  double person_s = 0.0;       ///< a person was there
-  std::int64_t visits = 0;     ///< in which it was in sight
-  std::int64_t newest_ns = 0;  ///< of them; 0: never seen
+  double seen_s = 0.0;         ///< time in sight, all visits
+  double person_s = 0.0;       ///< time with a person there
+  std::int64_t visits = 0;     ///< visits in which it was in sight
+  std::int64_t newest_ns = 0;  ///< the newest of these visits; 0: never in sight
 };
 
 /// Dynamic map and speed map of a place.
@@ -36,18 +36,18 @@ struct SpeedMap {
   std::vector<SpeedCell> cells;
   std::vector<LaneProfile> profiles;
   AgedLayers ages;
-  std::int64_t now_ns = 0;            ///< for which it was made
+  std::int64_t now_ns = 0;            ///< time for which ages were computed
   std::int64_t date_ns = 0;           ///< of the newest visit used
-  std::vector<std::string> sessions;  ///< visits in which people were looked for
+  std::vector<std::string> sessions;  ///< visits in which people were searched for
   LaneSpeedOptions options;
-  std::string paths;  ///< `paths_digest` of the paths that the profiles lie along
+  std::string paths;  ///< `paths_digest` of the paths of the profiles
 
-  /// Share of the places that were in sight in some visit.
+  /// Share of the cells that were in sight in some visit.
   [[nodiscard]] double coverage() const;
 };
 
-/// The cell at points of the map frame; null where the dynamic map has no place. `map` must outlive
-/// it, and what is made from it.
+/// Returns a function that finds the cell at a point of the map frame; null where there is no cell.
+/// `map` must outlive the function and its results.
 [[nodiscard]] std::function<const SpeedCell*(const Eigen::Vector2d&)> cells_of(const SpeedMap& map);
 /// Presence at points, from the cells.
 [[nodiscard]] PresenceAt presence_of(const SpeedMap& map);
