@@ -9,10 +9,11 @@
 
 namespace roadbook {
 
-/// Whether a file has a name that Kalibr gives a camchain, or roadbook: camchain.yaml,
-/// camchain-imucam-BAG.yaml (until 2020), BAG-camchain.yaml and BAG-camchain-imucam.yaml (since).
+/// Whether a file name is that of a camchain of Kalibr or roadbook: camchain.yaml,
+/// camchain-imucam-BAG.yaml (Kalibr until 2020), BAG-camchain.yaml and BAG-camchain-imucam.yaml
+/// (Kalibr since then).
 [[nodiscard]] bool is_camchain_name(std::string_view name);
-/// Such files in the folder, by name.
+/// Returns such files in the folder, ordered by name.
 [[nodiscard]] std::vector<std::filesystem::path> camchain_files(
     const std::filesystem::path& folder);
 

@@ -30,30 +30,30 @@ struct Detection {
 /// Covariance of (x, y) [m^2]: the stated one, else from sigma_m in each coordinate.
 [[nodiscard]] Eigen::Matrix2d covariance_of(const Detection& detection);
 
-/// An instant at which people were looked for, and how far the ground was seen.
+/// An instant at which people were searched for, and the range of visible ground.
 struct Look {
   std::int64_t t_ns = 0;
-  /// In equal sectors counter-clockwise from the vehicle's heading, steps of 0.1 m; empty: not
-  /// stated.
+  /// Visible range in equal sectors counter-clockwise from the vehicle's heading [0.1 m]; empty:
+  /// not stated.
   std::vector<std::uint8_t> reach_dm;
 };
 
-/// Rows of a detections table: `#timestamp [ns],x [m],y [m],sigma [m],probability [-],
-/// eye_x [m],eye_y [m],xx [m^2],xy [m^2],yy [m^2]`, all behind y optional, in any order of time.
-/// Throws BadInput with all faults.
+/// Reads a table of detections: `#timestamp [ns],x [m],y [m],sigma [m],probability [-],
+/// eye_x [m],eye_y [m],xx [m^2],xy [m^2],yy [m^2]`. Columns after y are optional; rows may be in
+/// any order of time. Throws BadInput with all faults.
 [[nodiscard]] std::vector<Detection> read_detections(const std::filesystem::path& file);
 
-/// Rows of a table of looks: `#timestamp [ns],reach_0 [m],reach_1 [m],...`, the reach optional; one
-/// at least. Throws BadInput with all faults.
+/// Reads a table of looks: `#timestamp [ns],reach_0 [m],reach_1 [m],...`. The reach columns are
+/// optional; the table has at least one row. Throws BadInput with all faults.
 [[nodiscard]] std::vector<Look> read_looks(const std::filesystem::path& file);
 
-/// Writes `data.csv` and, where there are looks, `looks.csv` to the folder, which is made. Throws
+/// Creates `folder` and writes `data.csv` and, unless `looks` is empty, `looks.csv`. Throws
 /// StorageError.
 void write_detections(const std::filesystem::path& folder,
                       std::span<const Detection> detections,
                       std::span<const Look> looks);
 
-/// Folder of the detector's tables in a drive, whether or not it is there.
+/// Path of the folder of the detector's tables in a drive. It may not exist.
 [[nodiscard]] std::filesystem::path detector_folder(const std::filesystem::path& drive);
 
 }  // namespace roadbook

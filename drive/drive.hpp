@@ -63,11 +63,11 @@ class Drive {
   /// Measures from vehicle.yaml; empty where the drive has no such file.
   [[nodiscard]] const std::optional<VehicleMeasures>& vehicle() const;
   [[nodiscard]] const std::optional<WheelModel>& wheel_model() const;
-  /// Takes known imperfections out of what is read from here on: rig, wheel model, wheel and IMU
-  /// readings (sensors/correction.hpp; the gyro's bias about z), and images that are late out of
-  /// the stamps of all other sensors. Throws BadInput for unknown effects. Files, digest, images
-  /// and truth stay as they are; clocks that drift agree at the first image, without images at the
-  /// first pose.
+  /// Corrects known imperfections in everything read from here on: rig, wheel model, wheel and IMU
+  /// readings (sensors/correction.hpp; the gyro's bias about z). A latency of all images is
+  /// corrected in the stamps of all other sensors. Files, digest, images and truth stay unchanged.
+  /// Drifting clocks agree at the first image, or without images at the first pose. Throws BadInput
+  /// for unknown effects.
   void correct(const EffectSizes& sizes);
 
   /// Calls `visit` for every wheel row in order; streamed (corrected ones are kept in memory).

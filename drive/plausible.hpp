@@ -10,10 +10,10 @@
 
 namespace roadbook {
 
-// Values that no vehicle has: nearly always another unit than the one that is stated. One table of
-// bounds (plausible.cpp) for what sensor.yaml files state and for the columns of tables.
+// Checks for values that no vehicle has. The usual cause is a unit other than the stated one. One
+// table of bounds (plausible.cpp) serves sensor.yaml files and the columns of tables.
 
-/// The values of one column, each compared with a bound; one message a column.
+/// Compares the values of one column with a bound, and gives one message for the column.
 class ColumnBound {
  public:
   /// `most`: largest absolute value, in the column's own unit; `want`: for the message.
@@ -22,9 +22,9 @@ class ColumnBound {
   void add(double value, std::int64_t line);
   /// Largest absolute value so far.
   [[nodiscard]] double largest() const { return largest_; }
-  /// A warning that names the largest value and how many rows are beyond the bound; an error where
-  /// they are more than one and more than 5 % of all: then the column is of another unit. `cause`
-  /// is a guess, or empty. Whether there was something to report.
+  /// Adds a warning with the largest value and the number of rows beyond the bound. It is an error
+  /// if these are more than one and more than 5 % of all rows: then the column has another unit.
+  /// `cause`: a possible cause, or empty. Returns whether there was something to report.
   bool report(const std::string& file, ProblemList& problems, const std::string& cause) const;
 
  private:
@@ -38,7 +38,7 @@ class ColumnBound {
   std::size_t beyond_ = 0;
 };
 
-/// "degrees?" where `value` is within `most` if its unit were degrees; else empty.
+/// "degrees?" if `value`, read as degrees, is within `most` [rad]; else empty.
 [[nodiscard]] std::string degrees_cause(double value, double most);
 
 /// Largest steering angle of a road wheel [rad]: the sharpest steering taxis reach 65 degrees.
@@ -46,11 +46,12 @@ inline constexpr double kMostSteering_rad = 1.2;
 /// Turn rate of a vehicle [rad/s]: 570 degrees a second.
 inline constexpr double kMostTurnRate_rad_s = 10.0;
 
-/// Mean length of specific forces; a vehicle at rest or not feels gravity. A warning says which
-/// unit, or which missing gravity, would explain another one.
+/// Checks the mean length of specific forces, which include gravity. For another mean than gravity,
+/// adds a warning with the unit, or the missing gravity, that would explain it.
 void check_mean_force(const std::string& file, double mean_m_s2, ProblemList& problems);
 
-/// Sizes of wheels and vehicle: errors for what no vehicle has, warnings for what few have.
+/// Checks the sizes of wheels and vehicle: errors for sizes that no vehicle has, warnings for rare
+/// ones.
 void check_wheel_sizes(const std::string& file, const WheelModel& wheels, ProblemList& problems);
 
 /// Warns of a calibration that cannot belong to images of the stated size (principal point far from
@@ -59,8 +60,8 @@ void check_camera_sizes(const std::string& file,
                         const MountedCamera& camera,
                         ProblemList& problems);
 
-/// For images of `got` where a calibration is of `want`: "half the size: ..." where both sides
-/// differ by one factor; else empty.
+/// Explains images of another size than the calibration: "half the size: ..." if both sides differ
+/// by the same factor; else empty.
 [[nodiscard]] std::string size_cause(std::int64_t got_width,
                                      std::int64_t got_height,
                                      std::int64_t want_width,

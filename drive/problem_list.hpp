@@ -11,8 +11,8 @@
 
 namespace roadbook {
 
-/// Gathers problems from any thread; of each file only the first few of each severity are kept and
-/// the rest is counted, so that a table that is wrong in every row still gives a readable list.
+/// Gathers problems from any thread. Keeps only the first few of each file and severity and counts
+/// the rest, so that a table with a fault in every row still gives a readable list.
 class ProblemList {
  public:
   static constexpr std::size_t kMaxPerFile = 20;

@@ -8,20 +8,20 @@
 
 namespace roadbook {
 
-// Compares steering angles with the turns of the rear wheels: angles in another unit, of the
-// steering wheel or of another sign stay within any bound on a gentle drive, but not within what
-// the wheels do.
+// Compares steering angles with the motion of the rear wheels. Angles in another unit, of the
+// steering wheel or with another sign stay within plausible bounds on a gentle drive, but
+// contradict the wheels.
 
-/// Curvature of the path by the wheels (turn over distance) against that by the steering
-/// (tan(angle) / wheelbase), each over pieces of half a metre.
+/// Compares two curvatures over pieces of half a metre: by the wheels (turn over distance) and by
+/// the steering (tan(angle) / wheelbase).
 class SteeringCheck {
  public:
   explicit SteeringCheck(const WheelModel& model) : model_(model) {}
   /// The wheels turned by these angles [rad] while the road wheels stood at `steering_rad`.
   void add(double left_turn_rad, double right_turn_rad, double steering_rad);
-  /// A warning where both curvatures go together (correlation above 0.9, 20 pieces or more) and the
-  /// wheels' is more than 2.5 times the steering's, less than 0.4 times, or of the other sign.
-  /// `field`: the column.
+  /// Adds a warning if the curvatures are correlated (above 0.9, at least 20 pieces) and the
+  /// curvature of the wheels is more than 2.5 times that of the steering, less than 0.4 times, or
+  /// of opposite sign. `field`: name of the column.
   void report(const std::string& file, const std::string& field, ProblemList& problems) const;
 
  private:

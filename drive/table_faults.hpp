@@ -7,10 +7,10 @@
 
 namespace roadbook {
 
-// Why a line of text is no row of the table that a reader expects, in words for a message: tables
-// of other programs have other separators, quotes, decimal commas and encodings.
+// Explains in a message why a line of text is no row of the expected table. Tables of other
+// programs have other separators, quotes, decimal commas and encodings.
 
-/// "UTF-16 text" or "line ends of CR alone"; empty where the line has nothing of both.
+/// "UTF-16 text" or "line ends of CR alone"; empty if neither applies.
 [[nodiscard]] std::string encoding_fault(std::string_view line);
 
 /// Names the wrong separators in a row of `got` fields where `want` are wanted ("semicolons between

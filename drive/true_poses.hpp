@@ -6,10 +6,10 @@
 
 namespace roadbook {
 
-/// Where the vehicle truly was: `truth/poses` of a simulated drive whose reference poses are those
-/// of a map that is scaled or bent, else the reference poses; empty where there are none. For
-/// comparison alone: what finds causes never asks (a test checks), and of what makes maps only the
-/// summary, which says how far off the finished map is. Throws BadInput.
+/// Returns the true poses of the vehicle: `truth/poses` of a simulated drive if its reference poses
+/// are wrong on purpose (a scaled or bent map), else the reference poses. Empty if the drive has
+/// neither. Only for evaluation: diagnosis never reads them (a test checks this), and mapping reads
+/// them only for the error in its summary. Throws BadInput.
 [[nodiscard]] std::vector<TimedPose> true_poses(const Drive& drive);
 
 }  // namespace roadbook

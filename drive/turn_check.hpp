@@ -10,13 +10,13 @@
 
 namespace roadbook {
 
-/// Looks for turns of a wheel that no car drives. A few are warnings (the map bridges such a row,
-/// but the table is damaged); more than two and more than 5 % of the rows are one error: then the
-/// column or the wheel's size is of another unit.
+/// Finds wheel turns that are too fast for a car. A few give warnings: the map bridges such rows,
+/// but the table is damaged. More than two, and more than 5 % of the rows, give one error: then the
+/// column or the wheel's size has another unit.
 class TurnCheck {
  public:
   TurnCheck(std::string wheel, double radius_m) : wheel_(std::move(wheel)), radius_m_(radius_m) {}
-  /// The wheel turned by `turn_rad` in the `dt_s` before the row of this line.
+  /// Adds a row: the wheel turned by `turn_rad` in the time `dt_s` before it. `line`: in the file.
   void add(double turn_rad, double dt_s, std::int64_t line);
   void report(const std::string& file, ProblemList& problems) const;
 

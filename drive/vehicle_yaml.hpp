@@ -23,15 +23,15 @@ inline constexpr const char* kVehicleFile = "vehicle.yaml";
 [[nodiscard]] std::optional<VehicleMeasures> read_vehicle_yaml(const std::filesystem::path& file,
                                                                ProblemList& problems);
 
-/// The same for a file that a user names; throws BadInput with all the faults, and where the file
-/// holds too little for a body.
+/// The same for a file given by the user. Throws BadInput with all faults, also if the measures do
+/// not suffice for a body.
 [[nodiscard]] VehicleMeasures load_vehicle(const std::filesystem::path& file);
 
 /// Text that `read_vehicle_yaml` reads back to the same bits; unknown measures are left out.
 [[nodiscard]] std::string vehicle_yaml_text(const VehicleMeasures& vehicle);
 
-/// Warnings of what is read but hardly right: measures that give no body, a camera far outside the
-/// body, an axle that the wheels' sensor.yaml describes otherwise.
+/// Warns of valid but unlikely content: measures that give no body, a camera far outside the body,
+/// an axle that differs from the wheels' sensor.yaml.
 void warn_of_vehicle(const std::filesystem::path& file,
                      const VehicleMeasures& vehicle,
                      const Rig& rig,

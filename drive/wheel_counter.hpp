@@ -11,24 +11,24 @@
 
 namespace roadbook {
 
-// Cumulative readings of a wheel (ticks, angles) that begin again, made one continuous angle. A
-// counter begins again for two reasons. It wraps: its first value follows its last one, and no tick
-// is lost. Or it is reset to zero (a controller was restarted): the turn since the row before is
-// then unknown. A third event is no reading at all: a logger writes zeros while it receives
-// nothing. The counter then continues as if these zeros were not there.
+// Makes one continuous angle from cumulative wheel readings (ticks, angles) that start again. A
+// counter starts again for two reasons. It wraps: its first value follows its last one, and no tick
+// is lost. Or it is reset to zero (a controller was restarted): the turn since the previous row is
+// then unknown. A third event is a dropout: a logger writes zeros while it receives nothing. The
+// counter then continues as if these zeros did not exist.
 
-/// What happened between the row before and this one.
+/// Event between the previous row and this one.
 enum class CounterEvent {
   kNone,
   kWrap,    ///< undone exactly
   kReset,   ///< bridged with the speed before it
-  kReturn,  ///< the last reset or jump was none: the counter continues from before it
-  kJump,    ///< farther than a car drives, and none of the above; it stays in the angle
+  kReturn,  ///< the last reset or jump was a dropout: the counter continues from before it
+  kJump,    ///< a step too long for a car that no other event explains; it stays in the angle
 };
 
-/// One wheel's counter. Of the explanations of a step (none, a wrap, a reset) the first is taken
-/// that a car can have driven and that agrees with its speed before; where none agrees, the first
-/// that a car can have driven.
+/// The counter of one wheel. It explains each step as none, a wrap or a reset, in this order. It
+/// takes the first explanation that a car can drive and that agrees with the previous speed; if
+/// none agrees, the first that a car can drive.
 class WheelCounter {
  public:
   /// `ranges_rad`: the ranges at which the counter may wrap, as angles of the wheel.

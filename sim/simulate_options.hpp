@@ -13,16 +13,16 @@ struct SimulateOptions {
   std::uint64_t seed = 1;       ///< of the drive: driver, people, noise; not of the place
   EffectSizes effects;          ///< imperfections that are switched on
   bool noise = true;            ///< of images, wheels, IMU, friction; and the driver's wander
-  bool images = true;           ///< false: all but the images, at once
-  bool class_images = false;    ///< `segmentationN`: what every pixel shows (SurfaceClass)
+  bool images = true;           ///< false: writes all streams except images
+  bool class_images = false;    ///< `segmentationN`: class of every pixel (SurfaceClass)
   bool range_images = false;    ///< `truth/range/camN`: 16-bit PNG, millimetres from the camera
-  bool ranges = false;          ///< `range0`: a scanner's readings; also where its effects are on
-  bool detections = false;      ///< `detector0`: of people; also where its effects are on
-  bool temperature = false;     ///< of the tyres in `friction0`; also where its effect is on
-  double max_duration_s = 0.0;  ///< ends the drive early; 0: whole
-  std::map<std::string, double> camera_dies_s;  ///< by camera: no images from then on
+  bool ranges = false;          ///< `range0`: readings of a scanner; its effects switch it on
+  bool detections = false;      ///< `detector0`: detected people; its effects switch it on
+  bool temperature = false;     ///< of the tyres, in `friction0`; its effect switches it on
+  double max_duration_s = 0.0;  ///< ends the drive early; 0: the whole drive
+  std::map<std::string, double> camera_dies_s;  ///< by camera: time after which it gives no images
   int num_threads = 0;     ///< 0: all cores; the drive is the same for any number
-  bool overwrite = false;  ///< replaces a drive that is there
+  bool overwrite = false;  ///< replaces an existing drive
 
   /// Throws InvalidOption or BadInput (effects).
   void check() const;

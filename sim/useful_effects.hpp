@@ -9,19 +9,19 @@
 
 namespace roadbook {
 
-// Effects that would change nothing in a drive are refused: a size that is accepted and not applied
-// would be a false truth. A size of 0 means no effect.
+// Refuses effects that would change nothing in a drive. Otherwise the truth of the drive would list
+// an effect that was not applied. A size of 0 means no effect.
 
-/// Whether any effect's name begins so ("range0.").
+/// Whether the name of any effect begins with `prefix` ("range0.").
 [[nodiscard]] bool has_effects_of(const EffectSizes& effects, const std::string& prefix);
 
-/// Refuses effects of sensors that the scenario has not, and those that show in images alone where
-/// none are rendered. Throws BadInput that names each.
+/// Refuses effects of sensors that the scenario lacks, and effects that only images show if no
+/// images are rendered. Throws BadInput with each of them.
 void refuse_effects_without_use(const Scenario& scenario, const SimulateOptions& options);
 
-/// Refuses effects of wheels, steering, IMU and friction that change no reading until `last_ns`: of
-/// a puddle that the route does not meet, of a temperature that does not change. Simulates their
-/// stream again for each effect. Throws as above.
+/// Refuses effects of wheels, steering, IMU and friction that change no reading until `last_ns`,
+/// such as those of a puddle that the route does not cross, or of a constant temperature. Simulates
+/// the stream again for each effect. Throws as above.
 void refuse_effects_without_change(const World& world,
                                    const VehicleMotion& drive,
                                    std::int64_t start_ns,

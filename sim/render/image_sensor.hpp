@@ -5,7 +5,7 @@
 
 namespace roadbook {
 
-/// From a lens' view to the grey levels a camera delivers.
+/// Model of an image sensor: converts the brightness behind the lens to grey levels.
 struct ImageSensorOptions {
   double gain = 1.0;          ///< exposure: factor on the light
   double vignetting = 0.0;    ///< relative loss of light at the edge of the image circle

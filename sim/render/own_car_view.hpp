@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// Fills `hidden` and `own_brightness`, and clears `sees` where nothing is seen past the own car.
-/// The body never moves before its cameras: seen once, with eight rays a pixel.
+/// Fills `hidden` and `own_brightness`, and clears `sees` where the own car hides the whole pixel.
+/// The body never moves relative to the cameras, so it is rendered once, with eight rays per pixel.
 void see_own_car(const Mesh& own_car,
                  const Shader& shader,
                  const Eigen::Isometry3d& T_vehicle_camera,

@@ -11,8 +11,8 @@
 
 namespace roadbook {
 
-/// Rays of one origin, in the order of their pixels, and their hits. Stored component by component,
-/// so that many are aimed, cast and shaded at once.
+/// Rays from one origin, in the order of their pixels, and their hits. Stored component by
+/// component for vector instructions.
 struct RayBatch {
   static constexpr std::size_t kMost = 128;
   static constexpr std::size_t kPacket = 16;  ///< rays that Embree takes at once
@@ -31,7 +31,7 @@ struct RayBatch {
     dy[i] = d.y();
     dz[i] = d.z();
   }
-  /// Nothing hit yet.
+  /// Marks all rays as without a hit.
   void clear_ends();
 };
 
@@ -43,11 +43,11 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  /// Replaces the content. `lasting` takes longer to build and less to cast against; `flag` is set
-  /// in the number of every surface.
+  /// Replaces the content. `lasting`: builds slower and casts faster. `flag` is set in the number
+  /// of every surface.
   void set(const std::vector<Triangle>& triangles, bool lasting = false, std::uint32_t flag = 0);
 
-  /// Replaces the ends of rays that hit something nearer than so far.
+  /// Updates the hits of rays that hit a triangle nearer than their current hit.
   void intersect(RayBatch& rays) const;
 
  private:

@@ -10,10 +10,10 @@
 
 namespace roadbook {
 
-// Ray casting of a world through any lens: one ray a pixel, textures filtered over the pixel's
-// footprint (several places along it where it is long), more rays where surfaces meet.
+// Ray casting of a world through any lens: one ray per pixel, textures filtered over the footprint
+// of the pixel (at several points if it is long), more rays where surfaces meet.
 
-/// What a lens saw, before the image sensor.
+/// The image behind the lens, before the image sensor.
 struct View {
   cv::Mat brightness;  ///< 32-bit float, 0 to 255 as displayed, may exceed 255
   cv::Mat kind;        ///< 8 bit, SurfaceClass; empty if not wanted

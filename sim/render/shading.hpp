@@ -6,14 +6,15 @@
 
 namespace roadbook {
 
-/// Colours rays' ends. Keeps a reference to the world and its constants in single precision.
+/// Computes the brightness at the hits of rays. Keeps a reference to the world, and its constants
+/// in single precision.
 class Shader {
  public:
   explicit Shader(const World& world);
 
-  /// Fills the brightness (0 to 255, may exceed) of what rays of angular width `pixel_rad` see.
+  /// Fills the brightness (0 to 255, may exceed) at the hits of rays of angular width `pixel_rad`.
   void shade(RayBatch& rays, float pixel_rad) const;
-  /// What one of them sees.
+  /// Class of the surface that ray number `ray` hits.
   [[nodiscard]] SurfaceClass kind(const RayBatch& rays, std::size_t ray) const;
 
  private:

@@ -7,11 +7,11 @@
 
 namespace roadbook {
 
-// Geometry of shading without branches, which the compiler turns into eight pixels at a time.
+// Geometry of shading without branches, which the compiler vectorises to eight pixels at a time.
 
 using Lane = std::array<float, RayBatch::kMost>;
 
-/// The painted ground's raster and how rough and glossy it is.
+/// Raster, roughness and gloss of the painted ground.
 struct GroundPlan {
   float low_x = 0.0F, low_y = 0.0F, per_texel = 1.0F, texel = 1.0F;
   float width = 0.0F, height = 0.0F;  ///< [texels]
@@ -46,10 +46,10 @@ void footprints(const GroundPlan& plan,
                 float pixel_rad,
                 GroundRays& ground);
 
-/// Looks ray `k` up at stones that have moved by (x, y) [m].
+/// Shifts the texture lookup of the stones for ray `k` by (x, y) [m].
 void move_stones(const GroundPlan& plan, float x, float y, std::size_t k, GroundRays& ground);
 
-/// Places in the texture of the sky (4096 texels around) of directions.
+/// Texel positions of directions in the texture of the sky (4096 texels around).
 void sky_places(
     const Lane& dx, const Lane& dy, const Lane& dz, std::size_t count, Lane& x, Lane& y);
 constexpr float kSkyTexelsPerRad = 4096.0F / 6.28318531F;

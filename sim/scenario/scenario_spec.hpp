@@ -95,7 +95,7 @@ struct CeilingSpec {
   double lamp_brightness = 1.0;
 };
 
-/// People who walk to and fro along a crossing.
+/// People who walk back and forth along a crossing.
 struct PedestrianSpec {
   std::string crossing;
   int count = 1;
@@ -123,9 +123,9 @@ struct VehicleSpec {
   double max_steering = 0.60;             ///< [rad] at the road wheels
   double max_steering_rate = 0.6;         ///< [rad/s]
   double turn_radius_m = 5.0;             ///< corners of lanes are rounded to this
-  double wander_m = 0.08;                 ///< how far the driver strays from the lane's centre
-  double nose_down_rad = 0.0;             ///< the body pitched against the wheels' ground
-  // What the wheels scatter on their way, standard deviations after a metre.
+  double wander_m = 0.08;                 ///< deviation of the driver from the lane's centre
+  double nose_down_rad = 0.0;             ///< pitch of the body against the ground under the wheels
+  // Random slip of the wheels: standard deviations after a metre.
   double distance_scatter_m = 0.01;
   double heading_scatter_rad = 0.003;
 };

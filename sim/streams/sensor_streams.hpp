@@ -34,7 +34,7 @@ struct StreamOptions {
 [[nodiscard]] std::vector<ImuReading> simulate_imu(const VehicleMotion& drive,
                                                    std::int64_t start_ns,
                                                    const StreamOptions& options);
-/// What lies on the ground at a place.
+/// Class of the ground at (x, y) [m, world frame].
 [[nodiscard]] SurfaceClass ground_kind(const World& world, double x, double y);
 
 }  // namespace roadbook

@@ -27,8 +27,8 @@ struct CarShape {
 /// The measuring car's body.
 [[nodiscard]] CarShape own_car_shape();
 
-/// What vehicle.yaml of a simulated drive says: the body's measures and the axles of `vehicle`. An
-/// axle of a scenario that the body has no room for is left out.
+/// Content of vehicle.yaml of a simulated drive: measures of the body and axles of `vehicle`. Axles
+/// that do not fit into the body are left out.
 [[nodiscard]] VehicleMeasures vehicle_measures(const VehicleSpec& vehicle);
 
 /// Body with windows, lamps, plates, wheels, in the vehicle frame. Its textures are appended.

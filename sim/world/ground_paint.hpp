@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// The painted ground: brightness with baked light, and what every place is.
+/// The painted ground: brightness, including light and shadows, and class of every texel.
 struct PaintedGround {
   Canvas brightness;
   Canvas kind;   ///< SurfaceClass by value, coarser than the brightness

@@ -38,7 +38,7 @@ struct SpaceLine {
   double paint = 0.8;
 };
 
-/// What a scenario's rows come to in metres.
+/// Spaces, lines and parked cars of a scenario, with coordinates.
 struct Layout {
   std::vector<ParkingSpace> spaces;
   std::vector<SpaceLine> lines;

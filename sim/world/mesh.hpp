@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-/// What a pixel shows: values of the class-index images.
+/// Class of a surface: the values of class-index images.
 enum class SurfaceClass : std::uint8_t {
   kVoid = 0,  ///< outside the lens
   kRoad = 1,

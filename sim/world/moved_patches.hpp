@@ -14,34 +14,35 @@ namespace roadbook {
 struct MovedPatch {
   Eigen::Vector2d low = Eigen::Vector2d::Zero();
   Eigen::Vector2d high = Eigen::Vector2d::Zero();
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< [m]; of what is gone that of the stones
-  bool gone = false;
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< [m]; if `gone`, of the stones' texture
+  bool gone = false;                                ///< removed instead of moved
 
   [[nodiscard]] bool holds(const Eigen::Vector2d& p) const {
     return (p.array() >= low.array()).all() && (p.array() < high.array()).all();
   }
 };
 
-/// Squares of 4 m near the route, as many as make up `share` of them (one at least, none for 0).
-/// Each moves by 0.25 to 0.6 m in a random direction. A pure function of its arguments.
+/// Chooses the share `share` of the squares of 4 m near the route (at least one, none for 0). Each
+/// moves by 0.25 to 0.6 m in a random direction. A pure function of its arguments.
 [[nodiscard]] std::vector<MovedPatch> moved_patches(const Scenario& scenario,
                                                     double share,
                                                     std::uint64_t seed);
 
-/// Squares as above whose things are removed.
+/// Chooses squares as above whose content is removed.
 [[nodiscard]] std::vector<MovedPatch> gone_patches(const Scenario& scenario,
                                                    double share,
                                                    std::uint64_t seed);
-/// Both kinds, as the effects state; removed squares come first and have not moved.
+/// Chooses both kinds by the effects; removed squares come first and are not moved.
 [[nodiscard]] std::vector<MovedPatch> changed_patches(const Scenario& scenario,
                                                       const EffectSizes& effects,
                                                       std::uint64_t seed);
 
-/// Moves what a raster shows of the squares; what comes from beyond the raster stays as it was.
+/// Moves the content of a raster in the squares. Texels whose source is outside the raster keep
+/// their value.
 void move_content(const std::vector<MovedPatch>& patches, Canvas& canvas);
-/// New asphalt on the squares whose things are removed.
+/// Paints new asphalt on the removed squares.
 void pave(const std::vector<MovedPatch>& patches, const GroundSpec& ground, Canvas& brightness);
-/// Sets a raster of class numbers to `road` there.
+/// Sets a raster of class numbers to `road` on the removed squares.
 void clear_kinds(const std::vector<MovedPatch>& patches, std::uint8_t road, Canvas& kind);
 
 }  // namespace roadbook

@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// Where a person is at one moment.
+/// Position and heading of a person at one moment (world frame).
 struct PersonState {
   double x = 0.0;
   double y = 0.0;
@@ -17,8 +17,8 @@ struct PersonState {
   double walked_m = 0.0;
 };
 
-/// Everyone who walks during one drive, planned ahead: people walk to and fro along their crossing
-/// and wait while the measuring car passes.
+/// The motion of all people during one drive, planned ahead. They walk back and forth along their
+/// crossing and wait while the measuring car passes.
 class Pedestrians {
  public:
   Pedestrians(const Scenario& scenario, const VehicleMotion& drive, std::uint64_t seed);

@@ -12,14 +12,14 @@ namespace roadbook {
 /// object.
 class NoiseRow {
  public:
-  /// `y_m` is the place of the row.
+  /// `y_m`: position of the row.
   NoiseRow(const Canvas& canvas, float y_m);
 
   /// fractal_noise and value_noise with `per_m` cells a metre.
   const std::vector<float>& fractal(float per_m, int octaves, std::uint32_t seed) {
     return fractal(per_m, per_m * y_m_, octaves, seed);
   }
-  /// The same where cells are not square: `y` is the row's place in cells.
+  /// The same for cells that are not square; `y`: position of the row in cells.
   const std::vector<float>& fractal(float per_m, float y, int octaves, std::uint32_t seed);
   const std::vector<float>& value(float per_m, std::uint32_t seed);
 

@@ -10,13 +10,13 @@
 
 namespace roadbook {
 
-/// How the rows of large canvases are painted: on several threads. Between two bands of rows a
-/// callback decides whether to continue (a place of a square kilometre takes many seconds).
+/// Paints the rows of large canvases on several threads. Between two bands of rows it calls
+/// `progress`, which may stop it (a place of a square kilometre takes many seconds).
 struct RowWork {
   int num_threads = 0;
   Progress progress;
 
-  /// Asks; throws Interrupted if the answer is no.
+  /// Calls `progress`. Throws Interrupted if it returns false.
   void pause() const { report(progress, "world", 0, 1); }
 
   void run(const Canvas& canvas, const std::function<void(std::size_t)>& paint_row) const {

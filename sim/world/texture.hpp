@@ -18,10 +18,10 @@ class Texture {
   [[nodiscard]] int height() const { return pyramid_.height[0]; }
 
   /// Fills the values of the lookups: at (x, y) in texels of the finest level (centre of the first
-  /// texel: 0, 0), averaged over about `footprint` texels. Two levels are mixed only about half way
-  /// between them: most places cost one reading, and still no line shows where the level changes.
+  /// texel: 0, 0), averaged over about `footprint` texels. Two levels are blended only near half
+  /// way between them. So most lookups read one level, and the change of level shows no line.
   void look_up(Lookups& lookups) const;
-  /// The same for one place, bit by bit; eight at once are several times faster.
+  /// The same bits for one position. `look_up` is several times faster.
   [[nodiscard]] float sample(float x, float y, float footprint) const;
 
  private:

@@ -7,17 +7,16 @@
 
 namespace roadbook {
 
-// The inner loop of the renderer: half of the time of an image was spent reading textures one place
-// after the other (bench/render_bench.cpp).
+// The inner loop of the renderer: lookups in textures, eight at once (bench/render_bench.cpp).
 
-/// Places to look up in one texture, and the values found. Component by component, because eight
-/// are read at once.
+/// Positions to look up in one texture, and the values found. Stored component by component,
+/// because eight are read at once.
 struct Lookups {
   static constexpr std::size_t kMost = 384;
 
   std::size_t count = 0;
   alignas(32) std::array<float, kMost> x, y, footprint, value;
-  std::array<std::uint16_t, kMost> owner;  ///< for the caller: whom the value is for
+  std::array<std::uint16_t, kMost> owner;  ///< index that the caller gives to each lookup
 
   void add(float at_x, float at_y, float wide, std::size_t whose) {
     x[count] = at_x;
@@ -27,9 +26,9 @@ struct Lookups {
   }
 };
 
-/// All halved versions of a texture in one piece of memory. Every level has one column and one row
-/// more than it shows (the first ones again, or the last ones), so that the right and the lower
-/// neighbour of a texel are always there.
+/// All halved versions of a texture in one block of memory. Every level has an additional column
+/// and row (copies of the first ones, or of the last ones), so that every texel has a right and a
+/// lower neighbour.
 struct TexturePyramid {
   static constexpr std::size_t kMostLevels = 16;
 
@@ -39,12 +38,12 @@ struct TexturePyramid {
   bool tiled = false;
 };
 
-/// One place. Defines what the eight at once must give, bit by bit.
+/// Looks up one position. It defines the result; vectorised versions must give the same bits.
 [[nodiscard]] float texture_at(const TexturePyramid& pyramid, float x, float y, float footprint);
 
 using TextureLookup = void (*)(const TexturePyramid&, Lookups&);
 
-/// The fastest way this processor knows.
+/// Returns the fastest implementation for this processor.
 [[nodiscard]] TextureLookup choose_texture_lookup();
 
 }  // namespace roadbook

@@ -43,8 +43,8 @@ class VehicleMotion {
 };
 
 struct DriverOptions {
-  double lateral_slip_per_sqrt_m = 0.0;  ///< random sideways creep [m] after 1 m
-  bool wander = true;                    ///< the driver strays from the lane's centre
+  double lateral_slip_per_sqrt_m = 0.0;  ///< standard deviation of lateral slip [m] after 1 m
+  bool wander = true;                    ///< the driver deviates from the lane's centre
 };
 
 /// Drives `laps` times along `line`: pure pursuit with limited steering and steering rate, speed

@@ -14,11 +14,11 @@
 
 namespace roadbook {
 
-/// Everything that can be seen.
+/// Everything that a camera can see.
 struct World {
   Scenario scenario;
   Layout layout;
-  std::vector<MovedPatch> moved;  ///< and gone: already so in layout and paint
+  std::vector<MovedPatch> moved;  ///< moved and removed squares, applied in layout and paint
   Ground ground{GroundSpec{}};
   PaintedGround paint;
   Texture ground_texture;  ///< of `paint.brightness`
@@ -27,7 +27,7 @@ struct World {
   double fine_texel_m = 0.002;
   double coarse_texel_m = 0.009;
   std::vector<Texture> textures;
-  Mesh mesh;                     ///< all that does not move
+  Mesh mesh;                     ///< all static surfaces
   Mesh own_car;                  ///< the measuring car, vehicle frame
   std::vector<Mesh> other_cars;  ///< shapes for moving cars, vehicle frame
   int cloth_texture = 0;         ///< first of two textures a person wears; eight persons

@@ -8,9 +8,9 @@
 
 namespace roadbook {
 
-// The experiment's truth: a road and ten maps of it.
+// The truth of the experiment: a road and ten maps of it.
 
-/// Two miles of road as a path, from its heading.
+/// Makes two miles of road as a path, from its heading.
 [[nodiscard]] PathFrame spm_road(const SpmExperimentOptions& options);
 
 /// A grid of knots over the experiment's road.
@@ -18,15 +18,15 @@ namespace roadbook {
                               double spacing_m,
                               double kernel_width_m);
 
-/// One true map: knots with a class each, classes with a friction each.
+/// One true map: each knot has a class, and each class a friction.
 struct SpmTruth {
   PropertyMap map;  ///< p(Theta; P^t)
   std::vector<int> knot_class;
 };
 [[nodiscard]] SpmTruth spm_truth(const SpmExperimentOptions& options, std::uint64_t index);
 
-/// What the estimator is told first: the truth's parameters each times 1 + U(-0.9, 0.9), as the
-/// document says. `PropertyMapOptions::prior_mean_sigma` makes it as uncertain as it is wrong.
+/// Prior of the estimator: the true parameters, each multiplied by 1 + U(-0.9, 0.9), as in the
+/// paper. `PropertyMapOptions::prior_mean_sigma` gives it an uncertainty that fits these errors.
 [[nodiscard]] PropertyMapPrior spm_prior(const SpmExperimentOptions& options,
                                          const SpmTruth& truth,
                                          std::uint64_t index);
@@ -55,7 +55,7 @@ struct SpmRecord {
 /// Ground points [m, vehicle frame] of the experiment's thinned pixels, through the camera model.
 [[nodiscard]] std::vector<Eigen::Vector2d> spm_pixels(const SpmExperimentOptions& options);
 
-/// Where the driver is at a distance along the road.
+/// Lateral position e [m] of the vehicle at distance `s_m` along the road.
 [[nodiscard]] double spm_weave(const SpmExperimentOptions& options, double s_m);
 
 }  // namespace roadbook
