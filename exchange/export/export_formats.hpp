@@ -10,7 +10,8 @@
 
 namespace roadbook {
 
-// One function a format; contracts at `export_map`.
+// One function for each format. `export_map` (export_map.hpp) documents them. Each returns the
+// files written.
 
 using Paths = std::vector<std::filesystem::path>;
 
@@ -51,12 +52,13 @@ Paths export_gpkg(const std::filesystem::path& map,
                   const std::filesystem::path& out,
                   const ExportOptions& options);
 
-/// The raster layers asked for, or all; BadInput where the map has no such layer.
+/// Returns the names of the raster layers `asked`, or of all if it is empty. Throws BadInput if the
+/// map lacks one of them.
 [[nodiscard]] std::vector<std::string> chosen_rasters(const MapLayers& layers,
                                                       const std::vector<std::string>& asked);
 
-/// The vector layers asked for, or all, with labels at their current places; BadInput where the map
-/// has no such layer.
+/// Returns the vector layers `asked`, or all if it is empty, with labels at their current
+/// positions. Throws BadInput if the map lacks one of them.
 [[nodiscard]] std::vector<VectorLayer> chosen_vector_layers(const MapLayers& layers,
                                                             const std::vector<std::string>& asked);
 

@@ -6,16 +6,16 @@
 
 namespace roadbook {
 
-/// What an export leaves out, because its format has no place for it.
+/// Objects that an export leaves out, because the format cannot represent them.
 struct ExportNote {
   std::string what;       ///< plural, e.g. "parking spaces"
   std::size_t count = 0;  ///< how many of them
-  std::string why;        ///< and what holds them, where another format or profile does
+  std::string why;        ///< the reason, and another format or profile that can hold them
 };
 
 using ExportNotes = std::vector<ExportNote>;
 
-/// Appends a note where `count` is above 0.
+/// Appends a note if `count` is above 0.
 inline void add_note(ExportNotes& notes, std::string what, std::size_t count, std::string why) {
   if (count > 0) notes.push_back({std::move(what), count, std::move(why)});
 }

@@ -21,22 +21,22 @@ struct GeoOrigin {
 };
 
 struct ExportOptions {
-  /// For geojson, lanelet2, opendrive, commonroad; without it the map's own (`map_meta`:
-  /// `origin_latitude_deg`, `origin_longitude_deg`, `origin_x_axis_deg`) is taken.
+  /// For geojson, lanelet2, opendrive, commonroad. Empty: the origin stored in the map (`map_meta`:
+  /// `origin_latitude_deg`, `origin_longitude_deg`, `origin_x_axis_deg`).
   std::optional<GeoOrigin> origin{};
   /// Layers to write (geojson, gpkg: vector; geotiff: raster); empty: all, of geojson without
   /// `landmark_points`.
   std::vector<std::string> layers{};
   double step_m = 0.5;  ///< path: between the rows of a lane
-  /// path: the route from the first to the second place [m, map frame] instead of all lanes.
+  /// path: the route from the first to the second position [m, map frame] instead of all lanes.
   std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> route{};
 
   std::string lane{};                 ///< spm: the id of the lane to write; empty: all
-  std::string property = "friction";  ///< spm: which of the property map's
+  std::string property = "friction";  ///< spm: name of the property to write
 
   double resolution_m = 0.1;  ///< nav2: side of a cell
-  /// nav2: the vehicle for which lanes and ways into spaces are kept free; empty: a car, or the
-  /// vehicles of the map where they are larger (`footprint_for`).
+  /// nav2: the vehicle for which lanes and the ground between lanes and spaces are kept free.
+  /// Empty: a car, enlarged to the vehicles of the map (`footprint_for`).
   std::optional<VehicleFootprint> vehicle{};
 
   /// lanelet2: `lanelet2` (rules of the library itself) or `autoware` (with its extensions).
@@ -50,8 +50,8 @@ struct ExportOptions {
 
 /// Profiles of format lanelet2.
 [[nodiscard]] const std::vector<std::string>& lanelet2_profiles();
-/// Countries of format commonroad: those whose sign of a speed limit its schema knows. ZAM is
-/// CommonRoad's own, for maps of no country in particular.
+/// Countries of format commonroad: those with a speed-limit sign in its schema. ZAM is CommonRoad's
+/// own code for maps without a country.
 [[nodiscard]] const std::vector<std::string>& commonroad_countries();
 
 }  // namespace roadbook

@@ -10,8 +10,8 @@ class OGRCoordinateTransformation;
 
 namespace roadbook {
 
-/// Map frame to WGS84: turned to east and north, then by PROJ from an azimuthal equidistant
-/// projection about the origin, which keeps distance and direction from there.
+/// Converts the map frame to WGS84: rotation to east and north, then by PROJ from an azimuthal
+/// equidistant projection about the origin, which preserves distance and direction from the origin.
 class ToDegrees {
  public:
   explicit ToDegrees(const GeoOrigin& origin);
@@ -21,7 +21,8 @@ class ToDegrees {
 
   /// Longitude, latitude [degrees] of a point of the map [m].
   [[nodiscard]] Eigen::Vector2d operator()(const Eigen::Vector2d& p) const;
-  /// The point of the map of longitude, latitude [degrees]; empty where these are no degrees.
+  /// The point of the map [m] at longitude, latitude [degrees]; empty for values outside their
+  /// range.
   [[nodiscard]] std::optional<Eigen::Vector2d> inverse(const Eigen::Vector2d& degrees) const;
   /// East and north of the origin [m].
   [[nodiscard]] Eigen::Vector2d east_north(const Eigen::Vector2d& p) const;
@@ -40,15 +41,15 @@ class ToDegrees {
   std::unique_ptr<OGRCoordinateTransformation, Destroy> back_;
 };
 
-/// The origin given, or the map's own (`map_meta`), checked; empty where there is neither.
+/// Returns the origin of the options, or else the one stored in the map (`map_meta`), after a
+/// check; empty if there is neither.
 [[nodiscard]] std::optional<GeoOrigin> find_origin(const std::filesystem::path& map,
                                                    const ExportOptions& options);
 /// The transformation for that origin, to be used within a GdalScope; null where there is no
 /// origin.
 [[nodiscard]] std::unique_ptr<const ToDegrees> find_to_degrees(const std::filesystem::path& map,
                                                                const ExportOptions& options);
-/// The origin as `find_origin` finds it; BadInput where the map has no origin, with the reason why
-/// the origin is needed.
+/// The same. Throws BadInput if there is no origin; `reason`: why it is needed, for the message.
 [[nodiscard]] GeoOrigin require_origin(const std::filesystem::path& map,
                                        const ExportOptions& options,
                                        const std::string& reason);

@@ -13,7 +13,7 @@
 
 namespace roadbook {
 
-// Labels as files of other programs carry them: classes and outlines, no vehicle poses.
+// Labels in the form of other programs' files: classes and outlines, without vehicle poses.
 
 /// The label, and its map, that an outline was written from.
 struct LabelIdentity {
@@ -24,12 +24,12 @@ struct LabelIdentity {
 
 struct LabelOutline {
   std::string kind;
-  /// Empty where a file does not say: what has the form of a box may be one.
+  /// Empty if a file does not state it; an outline in the form of a box may then be a box.
   std::optional<LabelShape> shape{};
-  /// Map frame [m]. A box's begin ahead on the right of its heading and go counter-clockwise.
+  /// Map frame [m]. Those of a box start at the front right corner and go counter-clockwise.
   std::vector<Eigen::Vector2d> corners;
   double score = 1.0;
-  /// Of the middle in its least certain direction [m]; empty where a file does not say.
+  /// Standard deviation of the middle in its least certain direction [m]; empty if not stated.
   std::optional<double> sigma_m;
   /// Heading of a box, map frame [rad]; empty if a file does not give it. Corners are more exact;
   /// the heading selects the side that is ahead.

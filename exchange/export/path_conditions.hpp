@@ -13,7 +13,7 @@
 
 namespace roadbook {
 
-/// How fast, and on what grip, at one row of a path; NaN where the map does not know.
+/// Speed and friction at one row of a path; NaN if the map does not know them.
 struct PathCondition {
   double speed_limit = NAN;  ///< [m/s] of the lane
   double speed = NAN;        ///< [m/s] of a profile that the vehicle can follow
@@ -22,7 +22,7 @@ struct PathCondition {
   std::vector<PropertyMoments> further;  ///< of the map's other properties; empty: not known
 };
 
-/// Along a route speeds are worked out at such steps [m], however far apart its rows are.
+/// Step [m] at which speeds along a route are computed, for any distance of its rows.
 inline constexpr double kSpeedStepM = 0.25;
 
 /// Speed and friction along exported paths. Lanes have the profile stored in the map; a route has a
@@ -38,11 +38,11 @@ class PathConditions {
 
   /// By table and row.
   [[nodiscard]] const std::vector<std::vector<PathCondition>>& tables() const { return tables_; }
-  /// Of the newest visit, of the newest friction value; none where there is no such map.
+  /// Date of the newest visit, and of the newest friction value; empty if there is no such map.
   [[nodiscard]] std::optional<std::string> speed_date() const;
   [[nodiscard]] std::optional<std::string> friction_date() const;
-  /// Share of the dynamic map's places that were ever seen, and of the friction map's knots at
-  /// which labels were seen; 0 without such a map.
+  /// Share of the speed map's cells that were in sight, and of the friction map's knots that have
+  /// labels; 0 without such a map.
   [[nodiscard]] double speed_coverage() const;
   [[nodiscard]] double friction_coverage() const;
   /// Names of the friction map's further properties.

@@ -9,11 +9,11 @@
 
 namespace roadbook {
 
-// Labels where the overhead image ends: a space may be drawn half out of it.
+// Labels at the edge of the overhead image: a space may lie partly outside.
 
-/// The parts of an outline that lie in the picture, map frame [m]. The outline itself if no corner
-/// lies outside; otherwise its parts, cut at the edge, without parts less than a pixel wide. The
-/// outline must not cross itself. An outline that cannot be cut has no parts.
+/// Returns the parts of an outline inside the picture, map frame [m]. If no corner lies outside, it
+/// is the unchanged outline. Otherwise it is cut at the edge; parts less than a pixel wide are left
+/// out. The outline must not cross itself; one that cannot be cut has no parts.
 [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> parts_in_picture(
     const PicturePlace& place, const std::vector<Eigen::Vector2d>& outline);
 
@@ -21,8 +21,9 @@ namespace roadbook {
 [[nodiscard]] std::vector<LabelOutline> outlines_in_picture(const MapLayers& layers,
                                                             const PicturePlace& place);
 
-/// How many labels an export to `format` leaves out, as they lie outside the overhead image, and
-/// how many it cuts at its edge (yolo). Empty for formats without the image.
+/// Returns warnings with the number of labels that an export to `format` leaves out, because they
+/// lie outside the overhead image, and that it cuts at the edge (yolo). Empty for formats without
+/// the image.
 [[nodiscard]] std::vector<Problem> warnings_of_picture_edge(const std::filesystem::path& map,
                                                             const std::string& format);
 

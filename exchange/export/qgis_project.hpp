@@ -26,11 +26,11 @@ struct QgisProject {
   Eigen::AlignedBox2d extent;     ///< shown first [m]
 };
 
-/// The layers of `names` (vectors, then rasters) in the order in which they cover each other:
-/// labels on top, images at the bottom; what hides the overhead image is not visible at first.
+/// Sorts the layers `found` in drawing order: labels on top, images at the bottom. Layers that
+/// would hide the overhead image are switched off.
 [[nodiscard]] std::vector<QgisLayer> arranged_layers(const std::vector<QgisLayer>& found);
 
-/// The project as QGIS 3 reads it (.qgs, XML); vector layers drawn as layer_style_qml.hpp says.
+/// Returns the project file for QGIS 3 (.qgs, XML), with the styles of layer_style_qml.hpp.
 [[nodiscard]] std::string qgs_text(const QgisProject& project);
 
 }  // namespace roadbook

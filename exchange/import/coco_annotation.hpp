@@ -7,19 +7,18 @@
 
 namespace roadbook {
 
-/// The outline of one annotation of a COCO file, map frame, without its class. `where`: its path in
-/// the file.
+/// Reads the outline of one annotation of a COCO file, map frame, without its class. `where`: its
+/// path in the file, for messages. It reads these fields:
 ///
-/// - `segmentation` of one polygon, or `bbox` where there is none.
-/// - `attributes.rotation` (CVAT): the box is turned clockwise in the picture about its middle
-/// [deg].
-///   A polygon that repeats the corners of `bbox` is turned too; any other stands as it is drawn.
-/// - `attributes` of roadbook's own: `shape`, `heading_rad`, `sigma_m`, `note`; `space`, `version`,
+/// - `segmentation` with one polygon, else `bbox`.
+/// - `attributes.rotation` (CVAT): angle [deg] by which the box is turned clockwise in the picture
+///   about its middle. A polygon equal to the corners of `bbox` is turned too; any other is not.
+/// - roadbook's own `attributes`: `shape`, `heading_rad`, `sigma_m`, `note`, `space`, `version`,
 ///   `edited_utc`.
 ///
-/// Empty where the annotation cannot be a label: with a line in `file.left_out` where it is another
-/// kind of thing (a group, a mask, several parts, key points, a turn whose sense no standard
-/// tells), with a fault in `fields` where it is malformed.
+/// Empty if the annotation cannot be a label. If it is valid but of another kind (a group, a mask,
+/// several parts, key points, a rotation without a standard sense), adds a line to `file.left_out`.
+/// If it is malformed, adds a fault to `fields`.
 [[nodiscard]] std::optional<LabelOutline> read_coco_annotation(const nlohmann::json& annotation,
                                                                const std::string& where,
                                                                const PicturePlace& place,

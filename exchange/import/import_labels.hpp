@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-// Labels read back from the formats of other programs and hung on the vehicle poses of a map.
+// Import of labels from the formats of other programs, relative to the vehicle poses of a map.
 
 /// Names of the formats `import_labels` knows.
 [[nodiscard]] const std::vector<std::string>& label_import_formats();
@@ -26,18 +26,20 @@ struct LabelImport {
   [[nodiscard]] std::size_t count_left_out() const;
 };
 
-/// Outlines of a file, map frame, and its annotations that are no labels; one BadInput carries all
-/// faults of the file.
+/// Reads the outlines of a file, map frame, and its annotations that are no labels. Throws one
+/// BadInput with all faults of the file.
 ///
-/// - `coco`: a JSON of instances. Of its images the map's overhead image counts: the only one, the
-///   one with `world` (its place), or the one of the size of the map's own. Polygons, or boxes
-///   where an annotation has no polygon (coco_annotation.hpp); they may reach over the image's
-///   edge.
+/// - `coco`: a JSON file of instances. Only annotations of the overhead image count: the only
+/// image,
+///   the one with `world` (its position), or the one with the size of the map's overhead image.
+///   Reads polygons, or boxes if an annotation has no polygon (coco_annotation.hpp). They may
+///   extend beyond the image.
 /// - `yolo`: a folder with data.yaml (or classes.txt) and labels/overhead.txt, rows `class x y x y
-///   ...` or `class x y width height` in shares of the image; images/overhead.pgw tells its place,
-///   or images/overhead.png is the map's own.
-/// - `geojson`: polygons in WGS84 degrees with a property `class`; needs the map's place on the
-///   earth (`origin`, or the map's own). `class_field` names another property for the class.
+///   ...` or `class x y width height` in shares of the image. images/overhead.pgw gives the
+///   position of the image; without it, the image is the map's own.
+/// - `geojson`: polygons in WGS84 degrees with a property `class`. It needs the position of the map
+///   on the earth (`origin`, or the one stored in the map). `class_field` names another property
+///   for the class.
 ///
 /// Straight corners are removed (outline_shape.hpp). A class that differs from one of the map only
 /// in case, blanks or a plural s is that class. `not_X` is left out if X is a class of the map: it
@@ -48,9 +50,9 @@ struct LabelImport {
                                         const std::optional<GeoOrigin>& origin = std::nullopt,
                                         const std::string& class_field = {});
 
-/// Stores labels that are not in the map yet and applies the changes that the file makes
-/// (label_matching.hpp), all or nothing, in the name of `who`, and renews the map's label layers.
-/// One step for undo.
+/// Stores labels that are not in the map yet, applies the changes of the file to labels of the map
+/// (label_matching.hpp), all or nothing, in the name of `who`, and updates the map's label layers.
+/// It is one step for undo.
 ///
 /// Four corners that form a rectangle within the rounding of their file become a box along their
 /// longer side, unless the class is one of polygons. Files of `export_map` (coco, geojson) state

@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-// Which outlines of a file are labels that the map has already.
+// Matches the outlines of a file with the labels of the map.
 
 /// An outline that changes a label of the map.
 struct LabelEdit {

@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-// One function a format; contracts at `read_label_file`.
+// One function for each format. `read_label_file` (import_labels.hpp) documents them.
 
 /// Annotations that are no labels of this map, and why.
 struct LabelsLeftOut {
@@ -40,12 +40,11 @@ struct YoloFiles {
 };
 [[nodiscard]] YoloFiles yolo_files(const std::filesystem::path& folder);
 
-/// Where the picture of a YOLO folder lies: as its world file says, else as the map's own.
+/// Position of the picture of a YOLO folder: from its world file, else that of the map's own image.
 [[nodiscard]] PicturePlace yolo_picture_place(const std::filesystem::path& folder,
                                               const MapLayers& layers);
 
-/// The whole number in the same place of a picture's size as the map's overhead image has; BadInput
-/// where it has another.
+/// Throws BadInput unless a picture of `width` x `height` has the size of the map's overhead image.
 void require_size(const std::string& file, const PicturePlace& map, int width, int height);
 
 /// The identity of the label that an outline was written from, by a file's fields `space`,

@@ -7,19 +7,19 @@
 
 namespace roadbook {
 
-// Shapes of outlines as far as the digits of a file tell them: other programs round to pixels or to
-// decimals, close rings twice and double corners.
+// Shapes of outlines within the rounding of their file. Other programs round to pixels or decimals,
+// repeat the first corner, and double corners.
 
 /// Distance between neighbouring values that a writer could have written: 10^-d for the fewest
 /// decimals d (0 to 9) that all `values` have, or what single precision leaves of the largest. 0
 /// where they have more decimals than that.
 [[nodiscard]] double rounding_step(const std::vector<double>& values);
 
-/// How far a corner of a file may lie from where it was drawn [m]: one step in each coordinate, as
-/// some programs cut digits off; at least 1 mm.
+/// Largest distance of a corner in a file from its drawn position [m]: one step in each coordinate,
+/// because some programs truncate digits; at least 1 mm.
 [[nodiscard]] double corner_tolerance(const LabelOutline& outline);
-/// How far four rounded corners may be from a rectangle [m], as `is_rectangle` measures it: 2 cm,
-/// or what rounding of all four makes of one, up to 15 % of the shortest side.
+/// Largest distance of four rounded corners from a rectangle [m], as `is_rectangle` measures it: 2
+/// cm, or the effect of rounding all four corners, up to 15 % of the shortest side.
 [[nodiscard]] double rectangle_tolerance(const LabelOutline& outline);
 
 /// Removes redundant corners: a corner that repeats the one before, and a last one that repeats the

@@ -8,19 +8,19 @@
 
 namespace roadbook {
 
-/// Work that a map had and the map in its place has not, and the command that does it again.
+/// A result that the previous map had and the new map lacks, with the command that makes it again.
 struct DroppedWork {
   std::string name;  ///< "overhead image"
   std::vector<std::string> layers;
   std::string command;  ///< empty: no verb of roadbook made these layers
 };
 
-/// Layers and tables (`MapSummary::dropped`) by the work they belong to, in the order in which the
-/// commands are to be given.
+/// Groups dropped layers and tables (`MapSummary::dropped`) by the result they belong to, in the
+/// order of the commands to run.
 [[nodiscard]] std::vector<DroppedWork> dropped_work(const std::vector<std::string>& layers,
                                                     const std::filesystem::path& map);
 
-/// A warning for each.
+/// Returns one warning for each.
 [[nodiscard]] std::vector<Problem> dropped_warnings(const std::vector<DroppedWork>& dropped,
                                                     const std::filesystem::path& map);
 

@@ -7,8 +7,7 @@
 
 namespace roadbook {
 
-// Features of examples in a column of a table: 32 bit floats one after another, as the machine has
-// them.
+// Features of training examples in a column of a table: 32-bit floats, little-endian.
 
 [[nodiscard]] FieldValue feature_to_field(const Eigen::VectorXf& feature);
 

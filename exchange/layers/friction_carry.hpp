@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// A knot as a map file keeps it.
+/// A knot as a map file stores it.
 struct StoredKnot {
   std::uint64_t lane = 0;
   double s_share = 0.0;  ///< of its lane's length
@@ -17,13 +17,13 @@ struct StoredKnot {
   double evidence = 0.0;
 };
 
-/// Finds where stored knots lie on the current paths. Keeps references to its arguments.
+/// Finds the positions of stored knots on the current paths. Keeps references to its arguments.
 class KnotCarrier {
  public:
   KnotCarrier(const Map& map, const LaneStrips& strips, double reach_m);
 
-  /// Place in the property map; none where the ground is on no path (`reach_m` beside a tube and
-  /// beyond an end still counts: its knots are felt inside).
+  /// Position in the property map; empty if the ground is on no path. Ground within `reach_m` of a
+  /// tube or end still counts, because knots there influence the inside.
   [[nodiscard]] std::optional<PathPlace> place_of(const StoredKnot& knot) const;
 
  private:

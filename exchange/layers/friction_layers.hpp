@@ -13,7 +13,7 @@
 
 namespace roadbook {
 
-/// Between the names of a friction map's sessions: folders have commas in theirs.
+/// Separator of session names in a friction map. Names of folders may contain commas.
 constexpr char kBetweenSessions = '\n';
 
 /// Anchors every knot at the nearest keyframe (within 20 m).
@@ -23,15 +23,15 @@ void anchor_knots(const Map& map, FrictionMap& friction);
 /// `friction_settings`, `friction_knots` and `property_classes`, replacing older ones.
 void write_friction_layers(MapUpdate& update, const FrictionMap& friction);
 
-/// The friction map over the lanes as they are now; none where `friction` was never run. On the
-/// paths it was stored with the numbers are the stored ones. Where the paths are others, every knot
-/// goes to where its ground lies now (`KnotAnchor`; without a pose to its share of its lane's
-/// length); ground that has become part of a path gets knots that know nothing. What the classes
-/// have learned is their prior now. Throws BadInput for tables that do not fit together.
+/// Reads the friction map over the current lanes; empty if `friction` was never run. If the paths
+/// are those it was stored with, the numbers are the stored ones. Otherwise every knot moves to the
+/// current position of its ground (`KnotAnchor`; without a pose, to its share of its lane's
+/// length). Ground that is new on a path gets knots with the prior only. The classes keep their
+/// beliefs as prior. Throws BadInput for tables that contradict each other.
 [[nodiscard]] std::optional<FrictionMap> read_friction_layers(const MapLayers& layers,
                                                               const std::vector<LanePath>& lanes);
 
-/// A slice of one lane in the lane's own s; of a ring, around its seam.
+/// Cuts a slice of one lane, with s along this lane; on a ring it may cross the start.
 [[nodiscard]] PropertySlice lane_slice(const FrictionMap& friction,
                                        const LaneStrips::Strip& strip,
                                        double from_m,
@@ -39,19 +39,21 @@ void write_friction_layers(MapUpdate& update, const FrictionMap& friction);
                                        const std::string& map_name,
                                        std::size_t property = 0);
 
-/// Position of a property by name; throws InvalidOption naming `option`.
+/// Index of a property by name. Throws InvalidOption for `option` if there is none.
 [[nodiscard]] std::size_t property_of(const PropertyMap& map,
                                       const std::string& name,
                                       const char* option);
 
-/// Where a place of the property map lies [m, map frame], also outside its strip's tube.
+/// Converts a position of the property map to the map frame [m], also outside the tube of its
+/// strip.
 [[nodiscard]] Eigen::Vector2d ground_position(const LaneStrips::Strip& strip,
                                               const PathPlace& place);
 
-/// Tables that a build of the map from the drives keeps: what was measured, tied to poses, and what
-/// was said.
+/// Tables that a new build of the map keeps: measurements relative to poses, examples, and the
+/// configuration of speeds.
 [[nodiscard]] const std::vector<std::string>& measured_tables();
-/// The same of what belongs to all of a map's drives: rounds of learning, by the sessions' numbers.
+/// Tables that a new build keeps only if it begins with all drives of the map, because they refer
+/// to sessions by number: training rounds and further anchors.
 [[nodiscard]] const std::vector<std::string>& learning_tables();
 
 }  // namespace roadbook

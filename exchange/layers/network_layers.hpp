@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// What a consumer of the road network must know to trust or refuse it.
+/// Source, date and accuracy of a road network, by which a consumer can trust or refuse it.
 struct NetworkSource {
   std::string sessions;  ///< names of the sessions whose poses were used, separated by commas
   std::string date_utc;  ///< of the newest of them (utc_text)
@@ -20,8 +20,8 @@ void write_network_layers(MapUpdate& update,
                           const RoadNetwork& network,
                           const NetworkSource& source);
 
-/// The network as it was written, bit for bit. Throws BadInput where the map has no network, or
-/// where a lane names an intersection that is not there.
+/// Reads the network, with the same bits as written. Throws BadInput if the map has no network, or
+/// a lane names a missing intersection.
 [[nodiscard]] RoadNetwork read_network_layers(const MapLayers& layers);
 
 }  // namespace roadbook

@@ -15,21 +15,21 @@ void write_path_layers(MapUpdate& update,
                        const RoadNetwork& network,
                        const NetworkSource& source);
 
-/// The paths as they were written, control points bit for bit. Throws BadInput where the map has no
-/// paths, or where they do not fit together.
+/// Reads the paths, with the same bits of control points as written. Throws BadInput if the map has
+/// no paths, or its tables contradict each other.
 [[nodiscard]] std::vector<LanePath> read_path_layers(const MapLayers& layers);
 
-/// Digest of the curves: what lies along them (friction, speeds) belongs to these paths alone.
+/// Digest of the curves. Friction and speeds store it, because they are valid for these paths only.
 [[nodiscard]] std::string paths_digest(const std::vector<LanePath>& paths);
 
-/// The four corners of a parking space, turned so that the two of the open side come first: of the
-/// short sides the one nearer to a lane.
+/// Returns the four corners of a parking space in an order that starts with the two of the open
+/// side: the short side nearer to a lane.
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_with_open_side_first(
     std::vector<Eigen::Vector3d> corners, const RoadNetwork& network);
 
-/// Spaces of a polygon layer of rectangles; messages name `map` where the layer is of another kind.
-/// The open side is the short side nearer to a lane. Ids come from a numeric column `space` where
-/// it exists, otherwise they count from 0.
+/// Reads spaces from a polygon layer of rectangles. The open side is the short side nearer to a
+/// lane. Ids come from a numeric column `space` if it exists, otherwise they count from 0. Throws
+/// BadInput about file `map` for another kind of layer.
 [[nodiscard]] std::vector<SpacePlace> read_spaces(const std::filesystem::path& map,
                                                   const VectorLayer& polygons,
                                                   const RoadNetwork& network);

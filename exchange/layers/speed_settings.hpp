@@ -5,12 +5,12 @@
 
 namespace roadbook {
 
-/// The settings of `roadbook speeds --config`, as JSON in one row.
+/// Name of the table that holds the settings of `roadbook speeds --config`, as JSON in one row.
 inline constexpr const char* kSpeedConfigTable = "speed_config";
 
-/// Table `speed_settings` of one row: date, sessions, cell, and the options in JSON.
+/// Makes table `speed_settings` with one row: date, sessions, cell size, and the options in JSON.
 [[nodiscard]] PlainTable settings_table(const SpeedMap& map);
-/// Sets what that table holds. Throws BadInput.
+/// Reads that table into `map`. Throws BadInput.
 void read_settings(const MapLayers& layers, SpeedMap& map);
 
 }  // namespace roadbook

@@ -17,7 +17,7 @@ struct StoredPaths {
   std::string digest;  ///< of the map
 };
 
-/// Throws BadInput where `roads` has not been run on the map, or was by a version without paths.
+/// Throws BadInput if `roads` was not run on the map, or was run by a version without paths.
 void require_paths(const MapLayers& layers);
 
 /// Network and paths of a map. Throws BadInput.

@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-/// One row of a layer or table: values by name, of the type wanted.
+/// One row of a layer or table. Reads values by name and checks their types.
 class TableRow {
  public:
   /// All must outlive the row. `want`: the expected content of the table, for messages.
@@ -26,7 +26,7 @@ class TableRow {
         values_(values),
         want_(std::move(want)) {}
 
-  /// Throws BadInput where there is no value of that type.
+  /// The value of column `name`. Throws BadInput if it has another type or is missing.
   template <typename T>
   [[nodiscard]] const T& get(const std::string& name) const {
     for (std::size_t i = 0; i < fields_.size(); ++i)
@@ -34,14 +34,14 @@ class TableRow {
         return std::get<T>(values_[i]);
     fail(name, "no value of its type");
   }
-  /// A number, or `otherwise` where it is null.
+  /// A number, or `otherwise` if it is null.
   [[nodiscard]] double number(const std::string& name, double otherwise) const {
     for (std::size_t i = 0; i < fields_.size(); ++i)
       if (fields_[i].name == name && std::holds_alternative<double>(values_[i]))
         return std::get<double>(values_[i]);
     return otherwise;
   }
-  /// Ids are text: they have 64 bits without sign.
+  /// An id of 64 bits without sign, which is stored as text. Throws BadInput.
   [[nodiscard]] std::uint64_t id(const std::string& name) const {
     const auto& text = get<std::string>(name);
     std::uint64_t number = 0;
@@ -61,7 +61,7 @@ class TableRow {
   std::string want_;
 };
 
-/// A number as a field; null where it is not finite.
+/// A number as a field; null if it is not finite.
 [[nodiscard]] inline FieldValue finite_or_null(double value) {
   return value - value == 0.0 ? FieldValue(value) : FieldValue{};
 }

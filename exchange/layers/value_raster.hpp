@@ -9,13 +9,13 @@
 
 namespace roadbook {
 
-/// Values over the map's plane; NaN where nothing is known. Row 0 is the northernmost.
+/// Values on a grid in the map's plane; NaN: unknown. Row 0 is the northernmost.
 struct ValueRaster {
   RasterPlace place;
   std::vector<float> values;
 
-  /// The raster that covers [low, high] in square cells of about `resolution_m` (larger where it
-  /// would have more than 2^24), its lines at whole multiples of the resolution; all NaN.
+  /// A raster over [low, high] [m] with square cells of about `resolution_m`, all NaN. Cells are
+  /// larger if there would be more than 2^24. Its lines lie at whole multiples of the resolution.
   static ValueRaster over(const Eigen::Vector2d& low,
                           const Eigen::Vector2d& high,
                           double resolution_m);
@@ -31,8 +31,8 @@ void write_value_raster(MapUpdate& update,
                         const std::string& name,
                         const std::string& description,
                         const ValueRaster& raster);
-/// Writes them as a picture (red, green, blue, opacity) that any program shows directly: `calm` is
-/// dark, `danger` yellow, on both maps.
+/// Writes the values as an image (red, green, blue, opacity) that any program displays: value
+/// `calm` is dark, value `danger` yellow.
 void write_colour_raster(MapUpdate& update,
                          const std::string& name,
                          const std::string& description,

@@ -8,7 +8,8 @@
 
 namespace roadbook {
 
-// Lanelets as CommonRoad knows them: each is driven one way, and names those that follow it.
+// Lanelets for CommonRoad: each has one driving direction and lists its successors and
+// predecessors.
 
 struct DirectedLanelet {
   Lanelet lanelet;                      ///< `both_ways` is false
@@ -19,15 +20,15 @@ struct DirectedLanelet {
 /// Lanelets of a network, two for each that is driven both ways.
 [[nodiscard]] std::vector<DirectedLanelet> directed_lanelets(const LaneletNetwork& network);
 
-/// A way from the begin of one lanelet to the end of another, the quickest by the speed limits.
+/// The quickest route by the speed limits from the begin of one lanelet to the end of another.
 struct LaneletTrip {
   std::size_t from = 0;
   std::size_t to = 0;
   double time_s = 0.0;
 };
 
-/// The trip that takes longest, of those from up to 50 lanelets evenly taken; `lanelets` is not
-/// empty.
+/// Returns the trip with the longest time, among those from up to 50 evenly chosen lanelets.
+/// `lanelets` must not be empty.
 [[nodiscard]] LaneletTrip longest_trip(const std::vector<DirectedLanelet>& lanelets);
 
 }  // namespace roadbook

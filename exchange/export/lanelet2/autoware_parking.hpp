@@ -9,11 +9,11 @@
 
 namespace roadbook {
 
-// Parking spaces as Autoware's extension of Lanelet2 has them: a line of two points with a width,
-// that begins at the lane's side, within a polygon of the parking lot. Autoware finds a space's
-// lanelet by geometry (autoware_lanelet2_extension, query.cpp, getLinkedLanelets): both touch the
-// same lot, the line is within 5 m of the lanelet, and hits it when its length is added five times
-// before its first point.
+// Parking spaces for Autoware's extension of Lanelet2: a line of two points with a width that
+// begins at the lane's side, inside a polygon of the parking lot. Autoware finds the lanelet of a
+// space by geometry (autoware_lanelet2_extension, query.cpp, getLinkedLanelets). Both touch the
+// same lot, the line is within 5 m of the lanelet, and it hits the lanelet when extended by five
+// times its length before its first point.
 
 struct AutowareSpace {
   std::size_t space = 0;                            ///< index in PlannerMap::spaces
@@ -30,9 +30,9 @@ struct AutowareParking {
   std::size_t no_lane = 0;                         ///< spaces left out: without a lane that fits
 };
 
-/// Spaces that Autoware links with the lane they belong to, and lots that hold them: the ground of
-/// the spaces, of the ways to them, and of the lanelets they are linked with. A space along a lane,
-/// whose open side does not face the lane, is entered from its side at the lane.
+/// Returns the spaces that Autoware links with their lane, and the lots around them: the ground of
+/// the spaces, between spaces and lanelets, and of the linked lanelets. A space along a lane, whose
+/// open side does not face the lane, is entered from its side at the lane.
 [[nodiscard]] AutowareParking autoware_parking(const PlannerMap& map,
                                                const LaneletNetwork& network);
 

@@ -15,8 +15,8 @@
 
 namespace roadbook {
 
-// An OSM file as Lanelet2 reads it: nodes, ways and relations with tags. No two nodes come closer
-// than `kNodeGap_m`, because Lanelet2's validator reports closer nodes as duplicates.
+// An OSM file for Lanelet2: nodes, ways and relations with tags. No two nodes are closer than
+// `kNodeGap_m`, because Lanelet2's validator reports closer nodes as duplicates.
 
 using OsmTags = std::vector<std::pair<std::string, std::string>>;
 
@@ -34,19 +34,20 @@ class OsmFile {
   /// `local_y`, metres east and north of the origin.
   OsmFile(const ToDegrees& to_degrees, bool autoware);
 
-  /// Keeps an id for an element that brings its own; false where another has it.
+  /// Reserves the given id of an element; false if the id is already used.
   bool reserve(std::int64_t id) { return used_.insert(id).second; }
-  /// An id that nothing in the file has.
+  /// Returns an id that the file does not use yet.
   std::int64_t new_id();
 
   /// A new node at a point of the map [m].
   std::int64_t node(const Eigen::Vector3d& p);
   /// The node closer than `kNodeGap_m` to a point, if there is one; the nearest of several.
   [[nodiscard]] std::optional<std::int64_t> node_near(const Eigen::Vector3d& p) const;
-  /// That node, or a new one.
+  /// The node closer than `kNodeGap_m`, or else a new node.
   std::int64_t shared_node(const Eigen::Vector3d& p);
-  /// Nodes along a dense line between two given nodes: as few as represent the line (chord_fits),
-  /// with new ones between. A place too close to another node is skipped for a neighbouring one.
+  /// Adds nodes along a dense line between two given nodes, as few as represent the line
+  /// (chord_fits). A point too close to another node is replaced by a neighbouring point. Returns
+  /// all nodes, with the given ones.
   std::vector<std::int64_t> nodes_along(const std::vector<Eigen::Vector3d>& line,
                                         std::int64_t first,
                                         std::int64_t last);

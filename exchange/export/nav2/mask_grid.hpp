@@ -8,12 +8,11 @@
 
 namespace roadbook {
 
-/// Square cells over the map's plane, a byte each, row 0 the northernmost: what a mask is made of.
+/// A mask: square cells in the map's plane, one byte each. Row 0 is the northernmost.
 class MaskGrid {
  public:
-  /// Covers [low, high] [m], its lines at whole multiples of the resolution; all cells 0. Throws
-  /// InvalidOption for a resolution at which the place has more than 2^27 cells, naming one that
-  /// fits.
+  /// Covers [low, high] [m], with lines at whole multiples of the resolution; all cells 0. Throws
+  /// InvalidOption, with a possible resolution, if there would be more than 2^27 cells.
   MaskGrid(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double resolution_m);
 
   [[nodiscard]] const RasterPlace& place() const { return place_; }
@@ -30,8 +29,8 @@ class MaskGrid {
   }
   [[nodiscard]] Eigen::Vector2d centre(int column, int row) const;
 
-  /// Sets every cell that the area within a ring touches. The ring [m] is simple, convex or not,
-  /// without repetition of its first point.
+  /// Sets every cell that the area inside a ring touches. The ring [m] does not cross itself, may
+  /// be concave, and does not repeat its first point.
   void mark(const std::vector<Eigen::Vector2d>& ring, std::uint8_t value);
 
  private:

@@ -10,23 +10,25 @@
 
 namespace roadbook {
 
-/// Where a vehicle may stand and where not.
+/// The ground on which a vehicle may be.
 struct KeepOutMask {
-  MaskGrid grid;          ///< 1: free; 0: to be kept out of
-  bool overhead = false;  ///< the map has an overhead image: ground outside of the lanes is known
-  /// Ids of parking spaces to which no free ground wide enough for the vehicle leads from a lane.
+  MaskGrid grid;          ///< 1: free; 0: keep out
+  bool overhead = false;  ///< the map has an overhead image, so ground off the lanes is known
+  /// Ids of parking spaces without a free path from a lane that is wide enough for the vehicle.
   std::vector<std::string> cut_off;
 };
 
-/// Free is what was seen free (seen_ground.hpp), and whatever else may be there:
+/// Computes the mask. These areas are free, even if an object was seen there:
 ///
-/// - what the vehicle touches on the way along a lane or a turn, in each direction in which it was
-///   driven, with 0.1 m and a cell to spare, and the width that was driven;
-/// - parking spaces, crossings, and the ground straight before a space as far as its lane.
+/// - the area that the vehicle sweeps along a lane or a turn, in each driven direction, with a
+/// margin
+///   of 0.1 m and one cell, and the driven width;
+/// - parking spaces, crossings, and the ground straight between a space and its lane.
 ///
-/// Free, unless something is known to stand there, is also what the vehicle sweeps when it reverses
-/// from the lane into the space. All else is to be kept out of: also what nobody has seen, as
-/// Nav2's keep-out filter lets a planner use unknown cells.
+/// Ground that was seen free (seen_ground.hpp) is free too. So is the area that the vehicle sweeps
+/// when it reverses from the lane into the space, unless an object is known there. All other cells
+/// are kept out, also unseen ground, because Nav2's keep-out filter lets a planner use unknown
+/// cells.
 ///
 /// `map` and `planner` were read from `map_file`. Throws InvalidOption, BadInput.
 [[nodiscard]] KeepOutMask keep_out_mask(const std::filesystem::path& map_file,

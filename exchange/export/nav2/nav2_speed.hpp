@@ -7,12 +7,12 @@
 
 namespace roadbook {
 
-/// Speed [m/s] for each cell of a grid, not faster than `query` says at any of its points.
-/// In the tube of a lane: the least answer of the queries of all lanes there. Elsewhere: the
-/// dynamic map's speed, or the least speed of the map where it has no place. Queries are made at
-/// points at most 0.125 m apart; the change of the gradient between neighbours bounds the speed
-/// between them.
-/// Deterministic for any number of threads (0: all cores).
+/// Computes the speed [m/s] for each cell of a grid, nowhere above the result of `query` at a point
+/// of the cell. In the tube of a lane it is the least result of the queries of all lanes there.
+/// Elsewhere it is the speed of the dynamic map, or the least speed of the map where it has no
+/// cell. Queries are made at points at most 0.125 m apart; the change of the gradient between
+/// neighbours bounds the speed between them. Deterministic for any number of threads (0: all
+/// cores).
 [[nodiscard]] std::vector<float> cell_speeds(const LaneQueries& queries,
                                              const MaskGrid& grid,
                                              int num_threads = 0);

@@ -10,14 +10,14 @@ namespace roadbook {
 
 // The ground between a parking space and its lane, for spaces that have a link.
 
-/// The vehicle's rear axle and where it looks (unit).
+/// Position of the vehicle's rear axle [m, map] and its direction (unit).
 struct VehiclePlace {
   Eigen::Vector2d position;
   Eigen::Vector2d heading;
 };
 
-/// The ground straight before the open side as far as the lane's centre, as wide as the space and
-/// at least `width_m`: a ring [m].
+/// The ground from the open side straight to the lane's centre, as wide as the space and at least
+/// `width_m`. Returns a ring [m, map].
 [[nodiscard]] std::vector<Eigen::Vector2d> ground_before(const PlannerSpace& space,
                                                          const LaneLayout& layout,
                                                          double width_m);

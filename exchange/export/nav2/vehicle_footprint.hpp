@@ -23,7 +23,7 @@ struct VehicleFootprint {
                                                 double clearance_m) const;
 };
 
-/// Of a body in the vehicle frame, as wide as its wider half twice.
+/// The footprint of a body in the vehicle frame. Its width is twice that of the wider half.
 [[nodiscard]] VehicleFootprint footprint_of(const Eigen::AlignedBox3d& body);
 
 /// A car of the default size, enlarged on each side as much as the vehicles that recorded the map.

@@ -19,8 +19,9 @@ struct DriveCubic {
   [[nodiscard]] Eigen::Vector2d at(double p_m) const;
 };
 
-/// Readers replace each cubic by chords, SUMO's by one for every 2 m: so no cubic is longer, or
-/// farther from its chord than `sagitta_m`. SUMO drops points closer than 0.1 m.
+/// Limits of a cubic. Readers replace each cubic by chords; SUMO takes one chord for every 2 m.
+/// Therefore no cubic is longer than that, or farther from its chord than `sagitta_m`. SUMO drops
+/// points closer than 0.1 m.
 struct DriveCubicOptions {
   double sagitta_m = 5e-4;
   double longest_m = 2.0;
@@ -33,12 +34,12 @@ struct DriveStretch {
   double end_m = 0.0;
 };
 
-/// Length at an end of a road that is bent there, for which its cubics are given: netconvert takes
-/// the first two chords for a sharp turn, unless the first one is long. 0 where it is not bent.
+/// Length of a single long cubic at the bent end of a road; 0 if the end is not bent. Without it,
+/// netconvert reads the first two chords as a sharp turn.
 [[nodiscard]] double bent_end_m(const PathCurve& curve, double at_m, double length_m);
 
-/// A stretch of a path as cubics; position and direction are exact at their joints. Each of
-/// `fixed` becomes one cubic.
+/// Converts a stretch of a path to cubics; position and direction are exact at their joints. Each
+/// stretch in `fixed` becomes one cubic.
 [[nodiscard]] std::vector<DriveCubic> drive_cubics(const PathCurve& curve,
                                                    double begin_m,
                                                    double end_m,

@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// A parking space or a crossing next to a road. Its rectangle (SUMO reads nothing else) lies about
-/// the place `s_m`, `t_m`; the outline is exact.
+/// A parking space or a crossing next to a road. Its rectangle, the only part that SUMO reads, is
+/// centred at `s_m`, `t_m`; the outline is exact.
 struct DriveObject {
   bool crossing = false;
   std::string id;
@@ -25,7 +25,7 @@ struct DriveObject {
 
 struct RoadObjects {
   std::vector<DriveObject> objects;
-  std::vector<DriveStretch> stretches;  ///< of the road, so that SUMO puts them in their places
+  std::vector<DriveStretch> stretches;  ///< one chord each, so that SUMO shows objects correctly
 };
 
 struct DriveObjects {
@@ -34,11 +34,12 @@ struct DriveObjects {
   std::size_t displaced = 0;         ///< next to no road: SUMO shows them elsewhere
 };
 
-/// Spaces and crossings with their roads. A space belongs to the road of its link where it lies
-/// next to that road; the others belong to the nearest road.
+/// Assigns spaces and crossings to roads. A space belongs to the road of its link if it lies next
+/// to that road; other objects belong to the nearest road.
 [[nodiscard]] DriveObjects drive_objects(const PlannerMap& planner, const DriveRoads& roads);
 
-/// A rectangle about an outline: of four corners along their sides, otherwise the smallest.
+/// A rectangle around an outline: along the sides of an outline with four corners, otherwise the
+/// smallest one.
 struct OutlineBox {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   Eigen::Vector2d ahead = Eigen::Vector2d::UnitX();  ///< from the first side to the opposite one

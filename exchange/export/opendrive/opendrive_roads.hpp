@@ -10,14 +10,14 @@ namespace roadbook {
 // The roads of an OpenDRIVE file. A road has one lane and is driven from its begin to its end: a
 // lane driven both ways is a pair of roads, a turn driven both ways two connecting roads.
 
-/// What a road's begin or end leads to.
+/// The road or junction at the begin or end of a road.
 struct DriveRoadEnd {
   int road = -1;      ///< number in `DriveRoads::roads`; -1: none
   int junction = -1;  ///< number of a junction; -1: none
 };
 
 struct DriveRoad {
-  PathCurve curve;       ///< runs the way the road is driven
+  PathCurve curve;       ///< in driving direction
   double begin_m = 0.0;  ///< on the curve
   double end_m = 0.0;
   double width_m = 0.0;
@@ -42,15 +42,16 @@ struct DriveJunction {
 struct DriveRoads {
   std::vector<DriveRoad> roads;  ///< lanes in the order of the pieces, then turns
   std::vector<DriveJunction> junctions;
-  std::size_t narrowed = 0;  ///< lanes bent so much that their whole width has no place
-  std::size_t widened = 0;   ///< lanes narrower than SUMO lets cars on
+  std::size_t narrowed = 0;  ///< lanes with a bend too tight for their whole width
+  std::size_t widened = 0;   ///< lanes narrower than SUMO requires for cars
 };
 
-/// Roads of a map. Rings are cut in three and lanes that return to their intersection in two: SUMO
-/// names the node between two roads after them, and takes no edge from a node to itself.
+/// Makes the roads of a map. Rings are cut in three and lanes that return to their intersection in
+/// two, because SUMO names the node between two roads after them and allows no edge from a node to
+/// itself.
 ///
-/// SUMO gives a turn the mean of the limits before and after it. So the limits next to a turn, over
-/// 5 m at least, are not above those of the turns that begin or end there.
+/// SUMO gives a turn the mean of the limits before and after it. Therefore the limits next to a
+/// turn, over at least 5 m, are not above the limits of the turns that begin or end there.
 [[nodiscard]] DriveRoads drive_roads(const PlannerMap& planner);
 
 /// "lane 17", "lane 17 back", "lane 17 part 2 of 3", "turn 4".

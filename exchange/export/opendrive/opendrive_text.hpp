@@ -7,7 +7,8 @@
 
 namespace roadbook {
 
-/// The OpenDRIVE 1.6 file: in the map frame, or with `to_degrees` in east and north of its origin.
+/// Returns the OpenDRIVE 1.6 file, in the map frame, or with `to_degrees` in metres east and north
+/// of the origin.
 [[nodiscard]] std::string opendrive_text(const PlannerMap& planner,
                                          const DriveRoads& roads,
                                          const DriveObjects& objects,

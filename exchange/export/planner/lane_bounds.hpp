@@ -9,10 +9,10 @@ namespace roadbook {
 
 // Bounds of lanes and turns, for formats that describe a lane by the lines to its left and right.
 //
-// A bound lies half the lane's width beside its curve. Where that would bend more tightly than
-// `kMostBoundCurvature`, on the inner side of a tight bend, the bound cuts the corner on its far
-// side: the lane becomes wider there, never narrower than what was driven. Lanelet2's validator
-// warns of bounds with more than 0.5 1/m.
+// The distance of a bound from the curve is half the lane's width. On the inner side of a tight
+// bend, where its curvature would exceed `kMostBoundCurvature`, the bound cuts the corner on its
+// far side: the lane becomes wider there, never narrower than the driven width. Lanelet2's
+// validator warns of bounds with more than 0.5 1/m.
 
 inline constexpr double kMostBoundCurvature = 0.47;  ///< [1/m]
 
@@ -31,8 +31,8 @@ struct LaneBounds {
 /// Bounds of a lane from its `s_begin_m` to its `s_end_m`. The ends lie square to the curve.
 [[nodiscard]] LaneBounds bounds_of(const LanePiece& piece);
 
-/// Bounds of a turn, which begin and end in the corners of the lanes it joins: the width changes
-/// smoothly from the one lane's to the other's.
+/// Bounds of a turn, which begin and end at the corners of the lanes it joins. The width changes
+/// smoothly from one lane to the other.
 [[nodiscard]] LaneBounds bounds_of(const Connector& turn, const LaneLayout& layout);
 
 /// Whether the chord between two points of a polyline fits the points between them: within 3 mm, in

@@ -11,11 +11,11 @@
 
 namespace roadbook {
 
-/// What a map answers about places of its lanes (`roadbook query`): how fast, who is met there,
-/// what grip, which label.
+/// Queries of a map at positions of its lanes (`roadbook query`): speed, presence of people, grip
+/// and class of the ground.
 class LaneQueries {
  public:
-  /// Throws BadInput where `roads` or `speeds` has not been run on the map.
+  /// Throws BadInput if `roads` or `speeds` was not run on the map.
   explicit LaneQueries(const std::filesystem::path& map);
   LaneQueries(const LaneQueries&) = delete;
   LaneQueries& operator=(const LaneQueries&) = delete;

@@ -9,11 +9,11 @@
 
 namespace roadbook {
 
-// Lanes and turns as lanelets (Lanelet2, CommonRoad): stretches between two bounds with one speed
-// limit each, which follow each other where they share both end points.
+// Lanes and turns as lanelets (Lanelet2, CommonRoad): stretches between two bounds, each with one
+// speed limit. Lanelets that share both end points follow each other.
 
-/// A cross section where lanelets meet, and the way over it: two lanelets follow each other where
-/// the one's `last` equals the other's `first`.
+/// A cross section where lanelets meet, with a direction: two lanelets follow each other if `last`
+/// of the first equals `first` of the second.
 struct LaneletEnd {
   int section = -1;
   bool turned = false;  ///< driven against the lane that the section belongs to
@@ -33,7 +33,7 @@ struct Lanelet {
 };
 
 struct LaneletOptions {
-  double longest_m = 45.0;  ///< of the centre; Lanelet2 and Autoware want at most 50
+  double longest_m = 45.0;  ///< of the centre; Lanelet2 and Autoware allow at most 50
 };
 
 struct LaneletNetwork {
@@ -42,25 +42,25 @@ struct LaneletNetwork {
   int sections = 0;  ///< number of cross sections
 };
 
-/// Lanelets of a map: lanes cut where their speed limit changes and at `longest_m`, rings and lanes
-/// that return to their start at least once. The first lanelet of a lane has the lane's id, all
-/// others have ids that follow from the lanes' (53 bits, unique).
+/// Makes the lanelets of a map. Lanes are cut where their speed limit changes and at `longest_m`;
+/// rings and lanes that return to their start are cut at least once. The first lanelet of a lane
+/// has the lane's id; all others have unique ids of 53 bits derived from the lanes'.
 [[nodiscard]] LaneletNetwork lanelets_of(const PlannerMap& map, const LaneletOptions& options = {});
 
 /// The id of a lanelet driven against its direction.
 [[nodiscard]] std::uint64_t id_of_way_back(const Lanelet& lanelet);
-/// That lanelet: bounds and ends exchanged.
+/// The lanelet in the opposite direction, with bounds and ends exchanged.
 [[nodiscard]] Lanelet reversed(const Lanelet& lanelet);
 
-/// Where a lanelet leads: its heading at the end against that at its begin; less than 30 degrees
-/// is straight on.
+/// Direction of a lanelet: its heading at the end relative to that at its begin. Less than 30
+/// degrees is straight.
 enum class TurnDirection : std::uint8_t { kRight, kStraight, kLeft };
 [[nodiscard]] TurnDirection turn_direction(const Lanelet& lanelet);
 
-/// An id of 53 bits that follows from two others.
+/// An id of 53 bits derived from two others.
 [[nodiscard]] std::uint64_t derived_id(std::uint64_t a, std::uint64_t b);
 
-/// An id of 53 bits that follows from a label's: the same in every export.
+/// An id of 53 bits derived from the id of a label; the same in every export.
 enum class LabelKind : std::uint64_t { kSpace = 0x5FACE, kCrossing = 0xC5055 };
 [[nodiscard]] std::uint64_t id_of_label(const std::string& label, LabelKind kind);
 

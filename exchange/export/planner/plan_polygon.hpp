@@ -10,11 +10,11 @@
 
 namespace roadbook {
 
-// Polygons and lines in plan, as GEOS works with them. To be used within a GdalScope.
+// Polygons and lines in the plane for GEOS. Use within a GdalScope.
 
 using PlanGeometry = std::unique_ptr<OGRGeometry>;
 
-/// The polygon within a ring of points; where the ring crosses itself, what both parts cover.
+/// The polygon inside a ring of points; for a ring that crosses itself, the union of its parts.
 [[nodiscard]] PlanGeometry polygon_of(const std::vector<Eigen::Vector3d>& ring);
 /// The ground between the bounds of a lanelet.
 [[nodiscard]] PlanGeometry polygon_of(const LaneBounds& bounds);

@@ -14,10 +14,10 @@
 
 namespace roadbook {
 
-// What exports for planners need of a map: lanes and turns with their speed limits, parking spaces
-// and crossings with the lanes they belong to.
+// The content of a map for planners' formats: lanes and turns with their speed limits, parking
+// spaces and crossings with the lanes they belong to.
 
-/// Where a parking space is entered from.
+/// The lane position from which a vehicle enters a parking space.
 struct SpaceLink {
   std::uint64_t lane = 0;   ///< id
   int piece = -1;           ///< index in `LaneLayout::pieces`
@@ -44,20 +44,21 @@ struct PlannerCrossing {
 
 class PlannerMap {
  public:
-  /// Throws BadInput where `roads` has not been run on the map.
+  /// Throws BadInput if `roads` was not run on the map.
   explicit PlannerMap(const std::filesystem::path& map);
 
   [[nodiscard]] const StoredPaths& stored() const { return stored_; }
   [[nodiscard]] const LaneLayout& layout() const { return layout_; }
   [[nodiscard]] const std::vector<PlannerSpace>& spaces() const { return spaces_; }
   [[nodiscard]] const std::vector<PlannerCrossing>& crossings() const { return crossings_; }
-  /// Number of labels of other classes, which no planner's format here holds.
+  /// Number of labels of other classes, which no planner's format can represent.
   [[nodiscard]] std::size_t other_labels() const { return other_labels_; }
-  /// Whether the map has a speed map. If not, speeds follow from bends and the default limit alone.
+  /// Whether the map has a speed map. Otherwise speeds follow from bends and the default limit
+  /// only.
   [[nodiscard]] bool speeds_known() const { return speeds_known_; }
 
-  /// The lane begins and ends at one place: a ring, or both ends at one intersection. Formats that
-  /// do not allow an edge from a node to itself cut it.
+  /// Whether the lane begins and ends at one point: a ring, or both ends at one intersection.
+  /// Formats that allow no edge from a node to itself must cut it.
   [[nodiscard]] bool returns_to_its_start(int piece) const;
 
   /// Least speed [m/s] of a lane's profile between two places on its piece's curve.
@@ -65,8 +66,8 @@ class PlannerMap {
   /// Speed limits over a piece, from its `s_begin_m` to its `s_end_m`.
   [[nodiscard]] std::vector<SpeedPiece> lane_speeds(int piece,
                                                     const SpeedPieceOptions& options = {}) const;
-  /// Speed limit [m/s] of a turn: nowhere above what bend, people, grip and law allow on its way,
-  /// nor above the profiles of the lane parts that it replaces.
+  /// Speed limit [m/s] of a turn: the least of the limits by bend, people, grip and law along it,
+  /// and of the profiles of the lane parts that it replaces.
   [[nodiscard]] double turn_speed(int connector) const;
 
  private:
