@@ -8,7 +8,7 @@
 #include "roadnet/build_network.hpp"
 
 // Measures the time of a road network from laps of a lot in steps of 20 cm, each lap with a
-// separate offset, and the time of the mean shift of satellite tracks (`draw_together`). The limit
+// separate offset, and the time of the mean shift of satellite tracks (`attract_passes`). The limit
 // for 8 laps is one second.
 
 namespace roadbook {
@@ -42,7 +42,7 @@ void draw_tracks_together(benchmark::State& state) {
   const auto passes = laps(static_cast<int>(state.range(0)), 2000.0, 10.0, 10.0);
   double driven_km = 0.0;
   for (const auto& pass : passes) driven_km += 0.01 * static_cast<double>(pass.positions.size());
-  for (auto _ : state) benchmark::DoNotOptimize(draw_together(passes, {}).size());
+  for (auto _ : state) benchmark::DoNotOptimize(attract_passes(passes, {}).size());
   state.counters["km"] = driven_km;
 }
 BENCHMARK(draw_tracks_together)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);

@@ -32,7 +32,7 @@ struct LineCell {
 
 class Cells {
  public:
-  explicit Cells(const DrawTogetherOptions& options)
+  explicit Cells(const AttractionOptions& options)
       : size_m_(options.width_m / kCellsAWidth), floor_m_(options.floor_m) {}
 
   std::size_t add(const Eigen::Vector3d& p, const Eigen::Vector3d& along) {
@@ -104,7 +104,7 @@ class Cells {
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> columns_;
 };
 
-void move_once(std::vector<DrivenPass>& passes, const DrawTogetherOptions& options) {
+void move_once(std::vector<DrivenPass>& passes, const AttractionOptions& options) {
   Cells cells(options);
   std::vector<std::vector<std::size_t>> cell_of(passes.size());
   for (std::size_t p = 0; p < passes.size(); ++p) {
@@ -124,8 +124,8 @@ void move_once(std::vector<DrivenPass>& passes, const DrawTogetherOptions& optio
 
 }  // namespace
 
-std::vector<DrivenPass> draw_together(const std::vector<DrivenPass>& passes,
-                                      const DrawTogetherOptions& options) {
+std::vector<DrivenPass> attract_passes(const std::vector<DrivenPass>& passes,
+                                       const AttractionOptions& options) {
   std::vector<DrivenPass> moved = passes;
   for (DrivenPass& pass : moved) pass.positions = resample(pass, options.step_m).points;
   for (int round = 0; round < options.rounds; ++round) move_once(moved, options);

@@ -6,7 +6,7 @@
 
 namespace roadbook {
 
-struct DrawTogetherOptions {
+struct AttractionOptions {
   double step_m = 3.0;  ///< between the positions of the result
   double width_m =
       12.0;              ///< standard deviation of the window in which positions attract each other
@@ -25,7 +25,7 @@ struct DrawTogetherOptions {
 /// not grow with the square of the passes.
 ///
 /// Deterministic, single-threaded, linear in the driven length and the rounds.
-[[nodiscard]] std::vector<DrivenPass> draw_together(const std::vector<DrivenPass>& passes,
-                                                    const DrawTogetherOptions& options);
+[[nodiscard]] std::vector<DrivenPass> attract_passes(const std::vector<DrivenPass>& passes,
+                                                     const AttractionOptions& options);
 
 }  // namespace roadbook

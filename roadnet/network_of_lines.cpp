@@ -78,7 +78,7 @@ LineNetwork network_of_lines(std::vector<DrivenPass> lines,
   const double reach_m = own.reach_m;
   const double step_m = reach_m / own.samples_a_reach;
   if (options.attraction_m > 0.0)
-    lines = draw_together(
+    lines = attract_passes(
         lines,
         {.step_m = step_m, .width_m = options.attraction_m, .floor_m = options.vertical_limit_m});
   const std::vector<DrivenPass> passes = repeated_parts(

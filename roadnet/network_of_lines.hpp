@@ -9,7 +9,7 @@ namespace roadbook {
 
 struct LineNetwork {
   RoadNetwork network;            ///< without ids; coverage and counts of passes refer to `lines`
-  std::vector<DrivenPass> lines;  ///< after `draw_together`, if the options ask for it
+  std::vector<DrivenPass> lines;  ///< after `attract_passes`, if the options ask for it
   double max_gap_m = 0.0;  ///< the lines are cut at longer gaps between positions; 0: nowhere
 };
 

@@ -45,7 +45,7 @@ TEST(DrawTogether, AWideBandOfPassesBecomesALineAtItsMiddle) {
   const auto before = sides(passes, 0.0);
   double mean = 0.0;
   for (const double s : before) mean += s / static_cast<double>(before.size());
-  auto after = sides(draw_together(passes, {}), 0.0);
+  auto after = sides(attract_passes(passes, {}), 0.0);
   std::sort(after.begin(), after.end());
   const double low = after[after.size() / 20];
   const double high = after[after.size() - after.size() / 20];
@@ -58,7 +58,7 @@ TEST(DrawTogether, AWideBandOfPassesBecomesALineAtItsMiddle) {
 // At an end, all neighbours lie on one side. A mean shift along the street would shorten the street
 // by 10 m in each round.
 TEST(DrawTogether, StreetsKeepTheirLength) {
-  for (const DrivenPass& pass : draw_together(street(0.0, 200, 6), {})) {
+  for (const DrivenPass& pass : attract_passes(street(0.0, 200, 6), {})) {
     const double a = pass.positions.front().x();
     const double b = pass.positions.back().x();
     EXPECT_NEAR(std::min(a, b), 0.0, 2.0);
@@ -70,7 +70,7 @@ TEST(DrawTogether, TwoStreetsAHundredMetresApartStayWhereTheyAre) {
   auto passes = street(0.0, 100, 2);
   const auto other = street(100.0, 100, 3);
   passes.insert(passes.end(), other.begin(), other.end());
-  const auto moved = draw_together(passes, {});
+  const auto moved = attract_passes(passes, {});
   for (std::size_t p = 0; p < moved.size(); ++p) {
     const double y_m = p < 100 ? 0.0 : 100.0;
     for (const double s : sides({moved[p]}, y_m)) EXPECT_LT(std::abs(s), 3.0 * kScatter_m);
@@ -84,9 +84,9 @@ TEST(DrawTogether, ACrossStreetDoesNotPullAlongItself) {
     for (auto& p : pass.positions) p = Eigen::Vector3d(p.y(), p.x() - 300.0, 0.0);
     cross.push_back(pass);
   }
-  const std::vector<DrivenPass> alone = draw_together(passes, {});
+  const std::vector<DrivenPass> alone = attract_passes(passes, {});
   passes.insert(passes.end(), cross.begin(), cross.end());
-  const std::vector<DrivenPass> together = draw_together(passes, {});
+  const std::vector<DrivenPass> together = attract_passes(passes, {});
   for (std::size_t p = 0; p < alone.size(); ++p)
     for (std::size_t i = 0; i < alone[p].positions.size(); ++i)
       EXPECT_LT((alone[p].positions[i] - together[p].positions[i]).norm(), 1e-9);
