@@ -58,7 +58,7 @@ RoadNetwork build_road_network(const std::vector<DrivenPass>& driven,
     for (DrivenPass& gap : gaps(driven, made.max_gap_m)) made.lines.push_back(std::move(gap));
     network.uncovered = uncovered_stretches(network, made.lines, options.vertical_limit_m);
   }
-  name_parts(network, previous);
+  assign_stable_ids(network, previous);
   return std::move(made.network);
 }
 

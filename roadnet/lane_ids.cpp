@@ -185,7 +185,7 @@ void name_lanes(RoadNetwork& network, const RoadNetwork& old) {
 
 }  // namespace
 
-void name_parts(RoadNetwork& network, const RoadNetwork* previous) {
+void assign_stable_ids(RoadNetwork& network, const RoadNetwork* previous) {
   sort_intersections(network);
   for (Lane& lane : network.lanes) direct(lane);
   std::sort(network.lanes.begin(), network.lanes.end(), [](const Lane& a, const Lane& b) {

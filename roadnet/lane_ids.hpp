@@ -9,6 +9,6 @@ namespace roadbook {
 /// Lanes run in the direction of most passes; if both directions have equally many, from the end
 /// with the smaller x (then y). A lane or intersection at the position of one in `previous` keeps
 /// its id, and a lane its direction. Other parts get ids derived from their position.
-void name_parts(RoadNetwork& network, const RoadNetwork* previous);
+void assign_stable_ids(RoadNetwork& network, const RoadNetwork* previous);
 
 }  // namespace roadbook
