@@ -68,7 +68,9 @@ std::vector<MovedPatch> moved_patches(const Scenario& scenario, double share, st
   return some_patches(scenario, share, kLeastShift, kMostShift, Random(seed, "moved patches"));
 }
 
-std::vector<MovedPatch> gone_patches(const Scenario& scenario, double share, std::uint64_t seed) {
+std::vector<MovedPatch> removed_patches(const Scenario& scenario,
+                                        double share,
+                                        std::uint64_t seed) {
   auto patches =
       some_patches(scenario, share, kFarStones, 2.0 * kFarStones, Random(seed, "gone patches"));
   for (MovedPatch& patch : patches) patch.gone = true;
@@ -78,7 +80,7 @@ std::vector<MovedPatch> gone_patches(const Scenario& scenario, double share, std
 std::vector<MovedPatch> changed_patches(const Scenario& scenario,
                                         const EffectSizes& effects,
                                         std::uint64_t seed) {
-  auto patches = gone_patches(scenario, effect_size(effects, "map", "landmarks_gone"), seed);
+  auto patches = removed_patches(scenario, effect_size(effects, "map", "landmarks_gone"), seed);
   const std::size_t gone = patches.size();
   for (const MovedPatch& moved :
        moved_patches(scenario, effect_size(effects, "map", "moved_landmarks"), seed))

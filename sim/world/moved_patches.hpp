@@ -29,9 +29,9 @@ struct MovedPatch {
                                                     std::uint64_t seed);
 
 /// Chooses squares as above whose content is removed.
-[[nodiscard]] std::vector<MovedPatch> gone_patches(const Scenario& scenario,
-                                                   double share,
-                                                   std::uint64_t seed);
+[[nodiscard]] std::vector<MovedPatch> removed_patches(const Scenario& scenario,
+                                                      double share,
+                                                      std::uint64_t seed);
 /// Chooses both kinds by the effects; removed squares come first and are not moved.
 [[nodiscard]] std::vector<MovedPatch> changed_patches(const Scenario& scenario,
                                                       const EffectSizes& effects,

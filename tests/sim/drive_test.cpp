@@ -145,7 +145,7 @@ TEST(Simulate, SquaresAndTheirCarsMoveAndTheTruthSaysWhere) {
 
 TEST(Simulate, WhatIsGoneHasNoCarsAndNoPaintAndTheTruthSaysWhere) {
   const Scenario scenario = tiny();
-  const auto all = gone_patches(scenario, 1.0, 5);
+  const auto all = removed_patches(scenario, 1.0, 5);
   const World before = make_world(scenario, {}, 1);
   const World after = make_world(scenario, {}, 1, {}, all);
   const auto holds = [&](const Eigen::Vector2d& p) {
@@ -174,7 +174,7 @@ TEST(Simulate, WhatIsGoneHasNoCarsAndNoPaintAndTheTruthSaysWhere) {
   (void)simulate(scenario, out, options);
   std::ifstream in(out / "truth/world.json");
   const auto world = nlohmann::json::parse(in);
-  EXPECT_EQ(world["gone"].size(), gone_patches(scenario, 0.25, options.seed).size());
+  EXPECT_EQ(world["gone"].size(), removed_patches(scenario, 0.25, options.seed).size());
   EXPECT_TRUE(world["moved"].empty());
 }
 
