@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-EffectSizes effects_beside_place(const Scenario& scenario, EffectSizes model) {
+EffectSizes effects_without_place_hinge(const Scenario& scenario, EffectSizes model) {
   constexpr double kNothing = 1e-9;  // [rad]
   const auto hinge = model.find("ground.hinge");
   if (hinge == model.end() || !scenario.ground.hinge) return model;

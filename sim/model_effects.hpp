@@ -9,6 +9,6 @@ namespace roadbook {
 /// only a flat ground: its `ground.hinge` is the whole change of slope. The simulation adds
 /// `ground.hinge` to the bend of the place. The function therefore subtracts the bend of the place,
 /// and leaves out a size whose remainder is zero. All other sizes stay unchanged.
-[[nodiscard]] EffectSizes effects_beside_place(const Scenario& scenario, EffectSizes model);
+[[nodiscard]] EffectSizes effects_without_place_hinge(const Scenario& scenario, EffectSizes model);
 
 }  // namespace roadbook

@@ -31,7 +31,7 @@ ExitStatus run_simulate(const SimulateCommand& command,
   options.images = !command.no_images;
   const Scenario scenario = load_scenario(command.scenario, command.scenario_options);
   if (!command.model.empty())
-    options.effects = effects_beside_place(scenario, read_effect_model(command.model));
+    options.effects = effects_without_place_hinge(scenario, read_effect_model(command.model));
   for (const auto& [name, size] : named_numbers("--effect", command.effects, "SENSOR.EFFECT=SIZE"))
     options.effects[name] = size;
   options.camera_dies_s = named_numbers("--camera-dies", command.dying_cameras, "CAMERA=SECONDS");

@@ -28,17 +28,18 @@ TEST(ModelEffects, AFoundHingeIsThatOfThePlaceAndDoesNotDouble) {
   ASSERT_NEAR(built, 2.0 * std::atan(0.035), 1e-9);
   for (const double found : {built, 0.05, 0.09}) {
     const EffectSizes effects =
-        effects_beside_place(zurich, {{"ground.hinge", found}, {"cam0.focal", 0.01}});
+        effects_without_place_hinge(zurich, {{"ground.hinge", found}, {"cam0.focal", 0.01}});
     EXPECT_NEAR(change_of_slope(zurich.ground, effects), found, 1e-9);
     EXPECT_EQ(effects.at("cam0.focal"), 0.01);
   }
-  EXPECT_FALSE(effects_beside_place(zurich, {{"ground.hinge", built}}).contains("ground.hinge"));
+  EXPECT_FALSE(
+      effects_without_place_hinge(zurich, {{"ground.hinge", built}}).contains("ground.hinge"));
 }
 
 TEST(ModelEffects, WhereThePlaceIsFlatAFoundHingeIsAllThereIs) {
   const Scenario flat = load_scenario("stuttgart", {});
   ASSERT_FALSE(flat.ground.hinge);
-  const EffectSizes effects = effects_beside_place(flat, {{"ground.hinge", 0.05}});
+  const EffectSizes effects = effects_without_place_hinge(flat, {{"ground.hinge", 0.05}});
   EXPECT_NEAR(change_of_slope(flat.ground, effects), 0.05, 1e-9);
 }
 
