@@ -6,7 +6,7 @@ namespace roadbook {
 // left of the direction of travel. In [SPM, eq. 5] it is positive to the right. The paper is
 // converted here only.
 
-[[nodiscard]] constexpr double to_document_sign(double e_m) { return -e_m; }
+[[nodiscard]] constexpr double to_paper_sign(double e_m) { return -e_m; }
 [[nodiscard]] constexpr double from_document_sign(double e_document_m) { return -e_document_m; }
 
 }  // namespace roadbook

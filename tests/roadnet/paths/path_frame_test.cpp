@@ -81,7 +81,7 @@ TEST(PathFrame, LeftIsPositiveAndTheDocumentsSignIsTheOpposite) {
     const Eigen::Vector2d d = g.position - p;
     const double cross = g.tangent.x() * d.y() - g.tangent.y() * d.x();
     const double e_document = std::copysign(d.norm(), cross);
-    EXPECT_NEAR(to_document_sign(found.e_m), e_document, 1e-9);
+    EXPECT_NEAR(to_paper_sign(found.e_m), e_document, 1e-9);
     EXPECT_NEAR(from_document_sign(e_document), found.e_m, 1e-9);
     const Eigen::Vector2d back(g.position.x() + e_document * g.tangent.y(),
                                g.position.y() - e_document * g.tangent.x());
@@ -211,7 +211,7 @@ TEST(PathFrame, EqualsTheGoldenValues) {
       const auto found = frame.project(xy);
       ASSERT_TRUE(found.inside());
       EXPECT_LT(frame.curve().distance_along(found.s_m, row.at("s")), 1e-8);
-      EXPECT_NEAR(to_document_sign(found.e_m), row.at("e").get<double>(), 1e-9);
+      EXPECT_NEAR(to_paper_sign(found.e_m), row.at("e").get<double>(), 1e-9);
       const PathPoint at = frame.curve().at(found.s_m);
       EXPECT_LT((at.tangent - point_of(row.at("tangent")).head<2>()).norm(), 1e-9);
       EXPECT_NEAR(at.curvature, row.at("curvature").get<double>(), 1e-9);
