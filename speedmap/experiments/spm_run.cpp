@@ -121,7 +121,7 @@ std::vector<PathPlace> spm_horizon(const SpmHorizonShape& shape, double s0_m) {
   std::vector<PathPlace> places;
   for (int n = 1; n <= shape.points; ++n) {
     const double angle = 2.0 * std::numbers::pi * n / shape.wavelength_m;
-    places.push_back({s0_m + n, from_document_sign(shape.amplitude_m * std::cos(angle))});
+    places.push_back({s0_m + n, from_paper_sign(shape.amplitude_m * std::cos(angle))});
   }
   return places;
 }

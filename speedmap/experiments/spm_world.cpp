@@ -194,7 +194,7 @@ double spm_weave(const SpmExperimentOptions& options, double s_m) {
   for (std::size_t i = 0; i < options.weave_amplitude_m.size(); ++i)
     e += options.weave_amplitude_m[i] *
          std::sin(kFullCircle * s_m / options.weave_wavelength_m[i] + options.weave_phase_rad[i]);
-  return from_document_sign(e);
+  return from_paper_sign(e);
 }
 
 SpmRecord spm_record(const SpmExperimentOptions& options,

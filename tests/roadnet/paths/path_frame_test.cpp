@@ -82,7 +82,7 @@ TEST(PathFrame, LeftIsPositiveAndTheDocumentsSignIsTheOpposite) {
     const double cross = g.tangent.x() * d.y() - g.tangent.y() * d.x();
     const double e_document = std::copysign(d.norm(), cross);
     EXPECT_NEAR(to_paper_sign(found.e_m), e_document, 1e-9);
-    EXPECT_NEAR(from_document_sign(e_document), found.e_m, 1e-9);
+    EXPECT_NEAR(from_paper_sign(e_document), found.e_m, 1e-9);
     const Eigen::Vector2d back(g.position.x() + e_document * g.tangent.y(),
                                g.position.y() - e_document * g.tangent.x());
     EXPECT_LT((back - p).norm(), 1e-9);
@@ -215,7 +215,7 @@ TEST(PathFrame, EqualsTheGoldenValues) {
       const PathPoint at = frame.curve().at(found.s_m);
       EXPECT_LT((at.tangent - point_of(row.at("tangent")).head<2>()).norm(), 1e-9);
       EXPECT_NEAR(at.curvature, row.at("curvature").get<double>(), 1e-9);
-      const auto back = frame.position(row.at("s"), from_document_sign(row.at("e")));
+      const auto back = frame.position(row.at("s"), from_paper_sign(row.at("e")));
       ASSERT_TRUE(back);
       EXPECT_LT((*back - xy).norm(), 1e-8);
     }
