@@ -34,7 +34,7 @@ std::vector<PersonRound> learn(const DetectRequest& request,
       throw BadInput(Problem{Severity::kError, map.sessions[s].drive_path, 0, "drive",
                              "none at hand", "the simulated drive of session " + name});
     const PeopleTruth truth(*drives[s]);
-    if (!truth.anybody()) messages.note("session " + name + ": nobody there to learn from");
+    if (!truth.has_people()) messages.note("session " + name + ": nobody there to learn from");
     const PeopleSession session(map, static_cast<int>(s), *drives[s], ground, request.options);
     if (!learner) learner.emplace(session.cameras(), request.options.learner);
     learner->set_cameras(session.cameras());

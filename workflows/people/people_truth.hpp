@@ -35,7 +35,7 @@ class PeopleTruth {
                            const std::vector<PersonCamera>& cameras,
                            double min_range_m,
                            double max_range_m) const;
-  [[nodiscard]] bool anybody() const { return !rows_.empty(); }
+  [[nodiscard]] bool has_people() const { return !rows_.empty(); }
 
  private:
   struct Row {
