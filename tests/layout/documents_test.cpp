@@ -109,6 +109,31 @@ TEST(Documents, GuidesAreShortAndTablesNarrow) {
   }
 }
 
+bool is_rule(const std::string& row) {
+  return row.starts_with("|-") && row.find_first_not_of("|-: ") == std::string::npos;
+}
+
+// An editing tool may put a rule in place of a row. The table then still looks like one.
+TEST(Documents, TablesHaveOneRuleAndEqualRows) {
+  for (const fs::path& page : pages()) {
+    std::vector<std::string> table;
+    std::vector<std::string> lines = lines_of(page);
+    lines.emplace_back();
+    for (const std::string& line : lines) {
+      if (line.starts_with("|")) {
+        table.push_back(line);
+        continue;
+      }
+      const std::string name = fs::relative(page, kProject).string();
+      for (std::size_t i = 0; i < table.size(); ++i) {
+        EXPECT_EQ(is_rule(table[i]), i == 1) << name << ": " << table[i];
+        EXPECT_EQ(columns_of(table[i]), columns_of(table.front())) << name << ": " << table[i];
+      }
+      table.clear();
+    }
+  }
+}
+
 TEST(Documents, SourcesNamePagesThatExist) {
   for (const char* folder : {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet",
                              "speedmap", "diagnosis", "exchange", "sim", "workflows", "apps"})
