@@ -49,7 +49,8 @@ Verb evaluate_verb() {
             options.add("--data", &command->data,
                         "recording (laps) or annotated pictures (labels)");
             options.add("--only", &command->only,
-                        "beginnings of effect names, separated by commas (diagnosis)");
+                        "beginning of the names to run: effects, several with commas (diagnosis), "
+                        "or drives (rows)");
             options.add("--seed", &command->seed, "seed of all random numbers");
             options
                 .add("--repeats", &command->repeats,
