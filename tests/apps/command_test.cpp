@@ -209,8 +209,8 @@ TEST(Command, BashCompletesVerbsOptionsAndChoices) {
   EXPECT_EQ(complete("roadbook import kitt", 2), "kitti kitti360\n");
 }
 
-// Checks the figures of docs/guide/friction.md, "On real data": the median of the mean error along
-// a horizon.
+// Checks the figures of docs/results/friction.md, "Recorded laps": the median of the mean error
+// along a horizon.
 TEST(Command, TheLapsOfARealCarGiveTheDocumentedFigures) {
   expect_one_error_line(run("roadbook evaluate laps -o laps"));
   expect_one_error_line(run("roadbook evaluate rows --only nothing -o rows"));

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 // Rules for pages of documentation: links lead somewhere, pages and tables stay short.
@@ -132,6 +133,43 @@ TEST(Documents, TablesHaveOneRuleAndEqualRows) {
       table.clear();
     }
   }
+}
+
+std::string text_of(const fs::path& file) {
+  std::string text;
+  for (const std::string& line : lines_of(file)) text += line + "\n";
+  return text;
+}
+
+// Words of letters, digits and underscores between two characters `quote`.
+std::set<std::string> words_between(const std::string& text, char quote) {
+  std::set<std::string> words;
+  std::string word;
+  bool inside = false;
+  for (const char c : text) {
+    const bool part = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+    if (inside && part) word += c;
+    if (!part && !word.empty()) words.insert(std::exchange(word, {}));
+    if (c == quote) inside = !inside;
+  }
+  return words;
+}
+
+// The parser lists the keys of each mapping as `only({"key", ...})`.
+TEST(Documents, TheScenarioReferenceHasEveryKeyOfTheParser) {
+  const std::string parser = text_of(kProject / "sim" / "scenario" / "scenario_parser.cpp");
+  const auto documented =
+      words_between(text_of(kProject / "docs" / "reference" / "simulation.md"), '`');
+  std::size_t keys = 0;
+  for (std::size_t at = parser.find("only({"); at != std::string::npos;
+       at = parser.find("only({", at + 1)) {
+    const std::string list = parser.substr(at, parser.find("})", at) - at);
+    for (const std::string& key : words_between(list, '"')) {
+      EXPECT_TRUE(documented.contains(key)) << key;
+      ++keys;
+    }
+  }
+  EXPECT_GT(keys, 70U);
 }
 
 TEST(Documents, SourcesNamePagesThatExist) {

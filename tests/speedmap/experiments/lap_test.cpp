@@ -9,7 +9,7 @@ namespace roadbook {
 namespace {
 
 // Measured: 0.126 degrees against 0.250 (KF) and 0.242 (GP) on the last 100 m; a memory of the
-// first lap without classes is better still (0.032), which docs/guide/friction.md says.
+// first lap without classes is better still (0.032), which docs/results/friction.md says.
 TEST(Laps, TheFirstLapOfARealCarPredictsTheSecondAheadOfIt) {
   ROADBOOK_REQUIRE_DATA(folder, "indy_av21");
   const LapData laps = read_laps(folder / "Putnam_park2023_run4_2.csv");
