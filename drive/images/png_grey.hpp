@@ -12,7 +12,7 @@ namespace roadbook {
 
 // 8-bit grey PNG images by libdeflate. Four cameras of 1280x960 at 12.5 Hz have to be decoded at
 // the same time as all other work. bench/images_bench.cpp compares this decoder with cv::imread
-// (less than half of its time; figures in docs/reference/drive_format.md).
+// (less than half of its time; figures in docs/results/speed.md).
 
 /// The image, or nothing where the file is damaged (checksums are verified) or not an 8-bit grey
 /// PNG without interlacing. `header` is what `inspect_image` said of `content`. Safe to call
