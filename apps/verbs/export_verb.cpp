@@ -54,7 +54,7 @@ void add_export_options(Options& options, ExportCommand& command) {
   format.choices = export_formats();
   options
       .add("--output,-o", &command.request.output,
-           "file to write; geojson: a file, or a folder for one file a layer")
+           "file to write; geojson: a file, or a folder for one file per layer")
       .required = true;
   options.add("--layer", &command.request.options.layers,
               "layer to write; may be repeated; default: all (geojson: all but landmarks)");

@@ -59,11 +59,10 @@ Verb report_verb() {
   return {"report", "writes one HTML page of figures and pictures about a map",
           [command](Options& options) {
             options.add("--map,-m", &command->map, "map file").required = true;
-            options.add(
-                "--before", &command->before,
-                "earlier state of the map: how labels have moved and who has changed which since");
+            options.add("--before", &command->before,
+                        "earlier state of the map, to show moved and edited labels");
             options.add("--look-again", &command->look_again,
-                        "looks for every label in the images of the newest drive");
+                        "search every label in the images of the newest drive");
             options.add("--output,-o", &command->output, "HTML file to write").required = true;
             options.add("--evaluation", &command->evaluation,
                         "folder written by `evaluate`: its figures go into the page");
