@@ -135,7 +135,7 @@ TEST(Documents, TablesHaveOneRuleAndEqualRows) {
   }
 }
 
-std::string text_of(const fs::path& file) {
+std::string lines_joined(const fs::path& file) {
   std::string text;
   for (const std::string& line : lines_of(file)) text += line + "\n";
   return text;
@@ -157,9 +157,9 @@ std::set<std::string> words_between(const std::string& text, char quote) {
 
 // The parser lists the keys of each mapping as `only({"key", ...})`.
 TEST(Documents, TheScenarioReferenceHasEveryKeyOfTheParser) {
-  const std::string parser = text_of(kProject / "sim" / "scenario" / "scenario_parser.cpp");
+  const std::string parser = lines_joined(kProject / "sim" / "scenario" / "scenario_parser.cpp");
   const auto documented =
-      words_between(text_of(kProject / "docs" / "reference" / "simulation.md"), '`');
+      words_between(lines_joined(kProject / "docs" / "reference" / "simulation.md"), '`');
   std::size_t keys = 0;
   for (std::size_t at = parser.find("only({"); at != std::string::npos;
        at = parser.find("only({", at + 1)) {
