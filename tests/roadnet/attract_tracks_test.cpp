@@ -1,10 +1,11 @@
+#include "roadnet/attract_tracks.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/random.hpp"
-#include "roadnet/attract_tracks.hpp"
 #include "tests/roadnet/chicago.hpp"
 #include "tests/support/real_data.hpp"
 
