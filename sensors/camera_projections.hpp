@@ -9,9 +9,10 @@
 
 namespace roadbook {
 
-// The projections themselves, templated on the scalar (double, or a dual number such as
-// ceres::Jet): simulation, estimation and diagnosis use the very same functions. Parameters stand
-// in the order listed at CameraModel. Each returns false where the model does not see the point.
+// The projections of the camera models, templated on the scalar (double, or a dual number such as
+// ceres::Jet). Simulation, estimation and diagnosis use the same functions. `q`: parameters in the
+// order listed at CameraModel; `p`: point in the camera frame. Each writes the pixel, and returns
+// false if the model cannot see the point.
 
 /// The number within a scalar: itself, or the value of a dual number.
 inline double scalar_value(double x) { return x; }
@@ -20,11 +21,11 @@ auto scalar_value(const Dual& x) -> decltype(static_cast<double>(x.a)) {
   return x.a;
 }
 
-/// Whether r(theta) of Kannala-Brandt grows all the way from 0 to `theta` [rad]; beyond the first
-/// angle where it ceases to, two rays share a pixel. Exact but for slopes below 1e-9.
+/// Whether r(theta) of Kannala-Brandt grows from 0 to `theta` [rad]. Beyond the first angle where
+/// it stops growing, two rays share a pixel. Exact except for slopes below 1e-9.
 [[nodiscard]] bool kannala_brandt_grows(const double* k, double theta);
-/// The radius, its slope, and the angle of a radius on the growing branch up to `max_angle` (to the
-/// last bits; empty only where no such angle exists).
+/// Radius r(theta), its slope, and the angle of a radius on the growing branch up to `max_angle`
+/// (exact to rounding error; empty only if there is no such angle).
 [[nodiscard]] double kannala_brandt_radius(const double* k, double theta);
 [[nodiscard]] double kannala_brandt_slope(const double* k, double theta);
 [[nodiscard]] std::optional<double> kannala_brandt_angle(const double* k,
@@ -45,7 +46,7 @@ Eigen::Matrix<T, 2, 1> distort_radtan(const T* k, const T& x, const T& y) {
           y * radial + T(2) * k[3] * x * y + k[2] * (r2 + T(2) * yy)};
 }
 
-/// `radtan_grows` out to the point m of the normalised plane.
+/// `radtan_grows` up to the point m of the normalised plane.
 template <typename T>
 bool sees_radtan(const T* k, const Eigen::Matrix<T, 2, 1>& m) {
   const std::array<double, 2> radial{scalar_value(k[0]), scalar_value(k[1])};

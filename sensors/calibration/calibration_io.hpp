@@ -11,15 +11,15 @@ namespace roadbook {
 // Camera calibrations in the files of other programs: Kalibr, OpenCV (and ROS), CamOdoCal, Basalt.
 //
 // docs/reference/sensors.md lists keys, parameter orders and conventions of each. All readers
-// gather every fault of a file and throw BadInput with file, line, field, what was found and what
-// is expected: wrong types and counts, numbers that are not finite, focal lengths that are not
+// gather every fault of a file and throw BadInput with file, line, field, the value found and the
+// value expected: wrong types and counts, numbers that are not finite, focal lengths that are not
 // positive, models that roadbook does not have, rotations that are left-handed or not orthonormal.
 
-/// What `T_vehicle_camera` of the cameras that were read is relative to.
+/// The reference frame of `T_vehicle_camera` in a calibration file.
 enum class CalibrationFrame {
-  kNone,         ///< the file says nothing of it: the identity
-  kFirstCamera,  ///< no vehicle: the first camera is the reference
-  kBody,         ///< Kalibr's and Basalt's "imu": the vehicle, in roadbook's own files
+  kNone,         ///< the file has no poses: all are the identity
+  kFirstCamera,  ///< the first camera
+  kBody,         ///< Kalibr's and Basalt's "imu"; in roadbook's own files, the vehicle
 };
 
 struct Calibration {
@@ -32,26 +32,27 @@ struct Calibration {
 /// Reads any of the formats below. The keys of the file decide the format (JSON: the file's name).
 [[nodiscard]] Calibration read_calibration(const std::filesystem::path& file);
 
-/// Kalibr's camchain.yaml: cam0, cam1, ... with `T_cam_imu` (camera <- body; `T_imu_cam` is its
-/// inverse, OpenVINS) or `T_cn_cnm1` (camera <- the camera before); where both stand, they must
-/// agree to 1e-3. `timeshift_cam_imu`: seconds to add to the camera's stamps.
+/// Reads Kalibr's camchain.yaml: cam0, cam1, ... with `T_cam_imu` (camera <- body; `T_imu_cam` is
+/// its inverse, OpenVINS) or `T_cn_cnm1` (camera <- previous camera). If a camera has both, they
+/// must agree to 1e-3. `timeshift_cam_imu`: seconds to add to the camera's stamps.
 [[nodiscard]] Calibration read_kalibr_camchain(const std::filesystem::path& file);
 
-/// One camera of an OpenCV file or a ROS camera_info file: camera_matrix, dist_coeffs (or
-/// distortion_coefficients), resolution (or image_width, image_height; 0 x 0 where neither stands).
-/// Four coefficients are cv::fisheye's unless `distortion_model` (or `camera_model`) says
-/// otherwise: cv::calibrateCamera never writes four. Beyond the fourth all must be 0.
+/// Reads one camera of an OpenCV file or a ROS camera_info file: camera_matrix, dist_coeffs (or
+/// distortion_coefficients), resolution (or image_width, image_height; 0 x 0 without both). Four
+/// coefficients are those of cv::fisheye, because cv::calibrateCamera never writes four, unless
+/// `distortion_model` (or `camera_model`) states another model. All after the fourth must be 0.
 [[nodiscard]] Calibration read_opencv_calibration(const std::filesystem::path& file);
 
-/// One camera of CamOdoCal (KITTI-360's fisheyes too): model_type MEI, KANNALA_BRANDT or PINHOLE.
+/// Reads one camera of CamOdoCal (also the fisheyes of KITTI-360): model_type MEI, KANNALA_BRANDT
+/// or PINHOLE.
 [[nodiscard]] Calibration read_camodocal_calibration(const std::filesystem::path& file);
 
-/// Basalt's calibration JSON: cameras of type ds, kb4, ucm or pinhole.
+/// Reads Basalt's calibration JSON: cameras of type ds, kb4, ucm or pinhole.
 [[nodiscard]] Calibration read_basalt_calibration(const std::filesystem::path& file);
 
-/// The text of a camchain.yaml that Kalibr and `read_kalibr_camchain` accept: body = vehicle.
-/// Numbers are the shortest that read back to the same bits, always with a point or an exponent
-/// (Kalibr refuses whole numbers as focal lengths).
+/// Returns the text of a camchain.yaml for Kalibr and `read_kalibr_camchain`; the body is the
+/// vehicle. Numbers are the shortest that read back to the same bits, always with a point or an
+/// exponent (Kalibr refuses whole numbers as focal lengths).
 [[nodiscard]] std::string kalibr_camchain_text(const Rig& rig);
 
 }  // namespace roadbook
