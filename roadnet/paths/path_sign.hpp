@@ -7,6 +7,6 @@ namespace roadbook {
 // converted here only.
 
 [[nodiscard]] constexpr double to_paper_sign(double e_m) { return -e_m; }
-[[nodiscard]] constexpr double from_paper_sign(double e_document_m) { return -e_document_m; }
+[[nodiscard]] constexpr double from_paper_sign(double e_paper_m) { return -e_paper_m; }
 
 }  // namespace roadbook

@@ -11,8 +11,9 @@
 #include "sim/world/layout.hpp"
 #include "sim/world/path.hpp"
 
-// The car parks of the source document: 80 spaces (Zurich) and 164 (Stuttgart), driven as their
-// scenarios say, each space linked to its lane and reached from where the drive begins.
+// The car parks of [metric-semantic maps, section VI]: 80 spaces (Zurich) and 164 (Stuttgart),
+// driven as their scenarios say, each space linked to its lane and reached from where the drive
+// begins.
 
 namespace roadbook {
 namespace {

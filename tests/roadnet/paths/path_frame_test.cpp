@@ -185,7 +185,7 @@ nlohmann::json read_json(const std::filesystem::path& file) {
 
 Eigen::Vector3d point_of(const nlohmann::json& xy) { return {xy[0], xy[1], 0.0}; }
 
-// Expected values of 20 to 30 digits, with the document's sign of e.
+// Expected values of 20 to 30 digits, with the paper's sign of e.
 TEST(PathFrame, EqualsTheGoldenValues) {
   const auto folder = test::source_tree() / "tests" / "golden" / "spm";
   for (const char* name : {"path_open.json", "path_closed.json"}) {
