@@ -30,7 +30,7 @@ struct KnownCircle {
 
 constexpr const char* kPrivatePart =
     "private part of a class: the header of the sources that implement it";
-constexpr const char* kToBeOpened = "from the time when a module was one flat folder";
+constexpr const char* kToBeOpened = "not opened yet";
 
 const std::vector<KnownCircle> kKnownCircles = {
     {kPrivatePart, {"base/yaml", "base/yaml_state"}},
@@ -40,29 +40,11 @@ const std::vector<KnownCircle> kKnownCircles = {
       "apps/label_server/people_wire"}},
     {kToBeOpened, {"drive/import/import", "drive/import/import_support"}},
     {kToBeOpened,
-     {"diagnosis/inference/acceptance", "diagnosis/inference/cause_evidence",
-      "diagnosis/inference/competing_terms", "diagnosis/inference/extended_model",
-      "diagnosis/inference/findings", "diagnosis/inference/lack_of_fit",
-      "diagnosis/inference/plausible_size", "diagnosis/inference/search",
-      "diagnosis/inference/search_result", "diagnosis/inference/size_interval"}},
-    {kToBeOpened,
-     {"diagnosis/detector_diagnosis", "diagnosis/diagnose", "diagnosis/known_causes",
-      "diagnosis/reading_diagnosis", "diagnosis/sessions_diagnosis", "diagnosis/stream_checks"}},
-    {kToBeOpened,
-     {"diagnosis/motion/grammar", "diagnosis/motion/motion_library",
-      "diagnosis/motion/motion_model", "diagnosis/motion/regularised_effects",
-      "diagnosis/motion/wet_places"}},
-    {kToBeOpened,
      {"diagnosis/logs/plain_columns", "diagnosis/logs/plain_log", "diagnosis/logs/plain_readings",
       "diagnosis/logs/plain_streams"}},
     {kToBeOpened,
      {"diagnosis/views/hinge_lines", "diagnosis/views/hinge_search", "diagnosis/views/view_fit",
       "diagnosis/views/view_saturation"}},
-    {kToBeOpened,
-     {"diagnosis/streams/coarse_readings", "diagnosis/streams/dead_reckoning",
-      "diagnosis/streams/observations"}},
-    {kToBeOpened, {"diagnosis/friction/friction_readings", "diagnosis/friction/inferred_surfaces"}},
-    {kToBeOpened, {"diagnosis/friction/friction_gram", "diagnosis/friction/friction_noise"}},
     {kToBeOpened, {"diagnosis/motion/large_effects", "diagnosis/motion/motion_problem"}},
     {kToBeOpened, {"diagnosis/logs/plain_matrix", "diagnosis/logs/plain_table"}},
     {kToBeOpened, {"diagnosis/views/view_data", "diagnosis/views/view_moments"}},

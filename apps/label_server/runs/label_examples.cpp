@@ -33,8 +33,7 @@ void check_is_map(const std::filesystem::path& file) {
   } catch (const BadInput& fault) {
     const Problem& problem = fault.problems().front();
     throw BadInput(Problem{Severity::kError, file.string(), 0, "--classifier",
-                           problem.got + " (" + problem.field + ")",
-                           "a map (.gpkg) with labels"});
+                           problem.got + " (" + problem.field + ")", "a map (.gpkg) with labels"});
   }
 }
 

@@ -41,8 +41,8 @@ void run_look_again(const std::filesystem::path& map,
   const LabelAgreement agreement = agreement_of(store.map(), labels);
   console.say(std::to_string(agreement.sightings.size()) +
               " labels found in another session, median distance " +
-              fixed(100.0 * agreement.median_m, 1) + " cm (" +
-              fixed(agreement.median_sigmas, 1) + " standard deviations): " +
+              fixed(100.0 * agreement.median_m, 1) + " cm (" + fixed(agreement.median_sigmas, 1) +
+              " standard deviations): " +
               (agreement.contradicts() ? "more than the poses allow, the map is distorted"
                                        : "the distances agree with the poses"));
   console.result({{"labels", labels.size()},

@@ -21,7 +21,8 @@ int session_of_drive(const Map& map, const Drive& drive) {
   const std::string digest = drive.digest();
   for (std::size_t s = 0; s < map.sessions.size(); ++s)
     if (map.sessions[s].drive_digest == digest) return static_cast<int>(s);
-  throw BadInput(Problem{Severity::kError, drive.folder().string(), 0, "drive", "a drive that is not in the map",
+  throw BadInput(Problem{Severity::kError, drive.folder().string(), 0, "drive",
+                         "a drive that is not in the map",
                          "a drive from which the map was made, unchanged"});
 }
 

@@ -23,7 +23,8 @@ std::string ground_verdict(const LearningRound& round,
                            const std::string& basis,
                            const std::string& now) {
   if (round.basis.empty()) return "not compared: the round stores no digest of its inputs";
-  if (round.basis != basis) return "not compared: poses, overhead image or examples of other maps have changed";
+  if (round.basis != basis)
+    return "not compared: poses, overhead image or examples of other maps have changed";
   return verdict(round.classifier, now);
 }
 
