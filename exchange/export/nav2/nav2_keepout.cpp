@@ -61,25 +61,23 @@ void sweep_lanes(const PlannerMap& planner, const VehicleFootprint& vehicle, Mas
     sweep(turn.curve, {true, turn.both_ways}, vehicle, turn.width_m, grid);
 }
 
-void mark_places(const PlannerMap& planner, const VehicleFootprint& vehicle, MaskGrid& grid) {
-  const double clearance_m = clearance_of(grid);
+void mark_places(const PlannerMap& planner, MaskGrid& grid) {
   for (const PlannerCrossing& crossing : planner.crossings()) grid.mark(flat(crossing.corners), 1);
-  for (const PlannerSpace& space : planner.spaces()) {
-    grid.mark(flat(space.corners), 1);
-    if (space.link)
-      grid.mark(ground_before(space, planner.layout(), vehicle.width_m + 2.0 * clearance_m), 1);
-  }
+  for (const PlannerSpace& space : planner.spaces()) grid.mark(flat(space.corners), 1);
 }
 
-// Marks the ground that the vehicle sweeps when it reverses into the spaces.
+// Frees unseen ground between the spaces and their lanes: the ground straight before a space and
+// the ground that the vehicle sweeps when it reverses into the space. Obstacles stay.
 void mark_entries(const PlannerMap& planner, const VehicleFootprint& vehicle, MaskGrid& grid) {
   const double clearance_m = clearance_of(grid);
   MaskGrid swept = grid;
   std::fill(swept.cells().begin(), swept.cells().end(), std::uint8_t{0});
-  for (const PlannerSpace& space : planner.spaces())
-    if (space.link)
-      for (const VehiclePlace& pose : reversing_into(space, planner.layout(), vehicle))
-        swept.mark(vehicle.at(pose.position, pose.heading, clearance_m), 1);
+  for (const PlannerSpace& space : planner.spaces()) {
+    if (!space.link) continue;
+    swept.mark(ground_before(space, planner.layout(), vehicle.width_m + 2.0 * clearance_m), 1);
+    for (const VehiclePlace& pose : reversing_into(space, planner.layout(), vehicle))
+      swept.mark(vehicle.at(pose.position, pose.heading, clearance_m), 1);
+  }
   for (std::size_t i = 0; i < grid.cells().size(); ++i)
     if (swept.cells()[i] != 0 && grid.cells()[i] == kUnseenGround) grid.cells()[i] = kFreeGround;
 }
@@ -185,7 +183,7 @@ KeepOutMask keep_out_mask(const std::filesystem::path& map_file,
       MaskGrid(extent.min(), extent.max(), resolution_m), !overhead_extent(layers).isEmpty(), {}};
   mark_seen_ground(layers, map, mask.grid);
   mark_entries(planner, vehicle, mask.grid);
-  mark_places(planner, vehicle, mask.grid);
+  mark_places(planner, mask.grid);
   sweep_lanes(planner, vehicle, mask.grid);
   for (std::uint8_t& cell : mask.grid.cells()) cell = cell == kFreeGround ? 1 : 0;
   mask.cut_off = cut_off_spaces(planner, vehicle.width_m, mask.grid);

@@ -72,21 +72,32 @@ bool is_of_class(const VectorLayer& layer, std::size_t index, const std::string&
          std::get<std::string>(values[*column]) == kind;
 }
 
-// Place on a curve nearest to a point, between its ends.
-double nearest_on(const PathCurve& curve, const Eigen::Vector2d& point) {
+constexpr double kLinkReach_m = 2.0;  // along the lane, between its polyline and its path
+
+// Place on a curve nearest to a point, at most `reach_m` from `around_m` along the curve: a lane
+// may pass the same point twice.
+double nearest_on(const PathCurve& curve,
+                  const Eigen::Vector2d& point,
+                  double around_m,
+                  double reach_m) {
   constexpr int kRounds = 60;
-  const auto distance = [&](double s) { return (curve.at(s).position - point).norm(); };
-  double best = 0.0;
-  for (const double s : even_places(curve, 0.25))
+  constexpr double kStep_m = 0.25;
+  const auto at = [&](double s) {
+    return curve.closed() ? s - curve.length_m() * std::floor(s / curve.length_m())
+                          : std::clamp(s, 0.0, curve.length_m());
+  };
+  const auto distance = [&](double s) { return (curve.at(at(s)).position - point).norm(); };
+  double best = around_m;
+  for (double s = around_m - reach_m; s <= around_m + reach_m; s += kStep_m)
     if (distance(s) < distance(best)) best = s;
-  double low = std::max(0.0, best - 0.25);
-  double high = std::min(curve.length_m(), best + 0.25);
+  double low = best - kStep_m;
+  double high = best + kStep_m;
   for (int i = 0; i < kRounds; ++i) {
     const double third = (high - low) / 3.0;
     (distance(low + third) < distance(high - third) ? high : low) =
         distance(low + third) < distance(high - third) ? high - third : low + third;
   }
-  return 0.5 * (low + high);
+  return at(0.5 * (low + high));
 }
 
 }  // namespace
@@ -174,11 +185,16 @@ std::optional<SpaceLink> PlannerMap::link_of(const SpacePlace& space, std::strin
   for (std::size_t i = 0; i < layout_.pieces.size(); ++i) {
     const LanePiece& piece = layout_.pieces[i];
     if (piece.id != found.lane) continue;
-    SpaceLink link{found.lane, static_cast<int>(i), nearest_on(piece.curve, space.front.head<2>())};
-    const PathPoint at = piece.curve.at(link.s_m);
-    const Eigen::Vector2d across = space.front.head<2>() - at.position;
-    link.left = at.left().dot(across) > 0.0;
-    link.distance_m = across.norm();
+    // The link's place on the lane's polyline, as a share of its length.
+    const double share =
+        found.place.s_m / stored_.network.lanes[static_cast<std::size_t>(piece.lane)].length_m;
+    const double length_m = piece.curve.length_m();
+    const double around_m = length_m * (piece.turned ? 1.0 - share : share);
+    const Eigen::Vector2d front = space.front.head<2>();
+    SpaceLink link{found.lane, static_cast<int>(i),
+                   nearest_on(piece.curve, front, around_m, kLinkReach_m)};
+    link.left = piece.turned ? !found.left : found.left;
+    link.distance_m = (front - piece.curve.at(link.s_m).position).norm();
     return link;
   }
   why = "its lane has no path";

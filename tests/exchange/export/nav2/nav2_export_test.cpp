@@ -10,6 +10,7 @@
 #include "exchange/export/planner/lane_queries.hpp"
 #include "semantics/overhead/geotiff_writer.hpp"
 #include "tests/apps/label_server/lot.hpp"
+#include "tests/exchange/planner_place.hpp"
 #include "tests/exchange/stored_speeds.hpp"
 #include "tests/support/command_output.hpp"
 #include "tests/support/source_tree.hpp"
@@ -219,6 +220,23 @@ TEST(Nav2Export, NoCellIsFasterThanQuerySaysAtAnyOfItsPoints) {
   }
 }
 
+// A space of 5.5 x 2.3 m along the ring's lower side (y = 0). Its short sides are of no use.
+TEST(Nav2Export, ASpaceAlongItsLaneIsEnteredOverItsLongSide) {
+  const test::PlannerPlace place;
+  export_map(place.map, "nav2", place.folder / "mask.pgm");
+  export_map(place.map, "path", place.folder / "lanes.json");
+  const std::string mask = path_in(place.folder, "mask_keepout.yaml");
+  // Before the long side; where a vehicle pulls in; beyond both short sides, away from the lane.
+  write_lines(place.folder / "points.txt",
+              {{50.5, 1.5}, {55.0, 1.5}, {47.5, 1.5}, {58.0, 1.5}, {41.5, 3.4}, {64.0, 3.4}});
+  EXPECT_EQ(nav2("cells " + mask + " " + path_in(place.folder, "points.txt")),
+            (std::vector<double>{0, 0, 0, 0, 100, 100}));
+  write_lines(place.folder / "space.txt", {{52.75, 3.05}});
+  EXPECT_EQ(nav2("connected " + mask + " " + path_in(place.folder, "lanes.json") + " 1.9 " +
+                 path_in(place.folder, "space.txt")),
+            std::vector<double>{1});
+}
+
 // The lot has one aisle and an overhead image. Landmarks form a wall along y = 5. No other ground
 // is known.
 TEST(Nav2Export, GroundBehindAWallIsForbiddenAndBeforeItFree) {
@@ -256,15 +274,21 @@ TEST(Nav2Export, GroundBehindAWallIsForbiddenAndBeforeItFree) {
   EXPECT_EQ(
       nav2("cells " + path_in(folder, "mask_keepout.yaml") + " " + path_in(folder, "points.txt")),
       (std::vector<double>{0, 0, 100, 100, 0, 100}));
-  // A parking space behind the wall is free ground, and so is the ground between the space and its
-  // lane.
+  // A parking space behind the wall is free ground, but no way leads through the wall.
   write_spaces(file, {{{12.0, 8.0}, 1.5708, 5.0, 2.5}});
   write_lines(folder / "space.txt", {{12.0, 8.0}});
   export_map(file, "path", folder / "lanes.json");
-  export_map(file, "nav2", folder / "mask.pgm");
+  ExportNotes cut_off;
+  export_map(file, "nav2", folder / "mask.pgm", {}, &cut_off);
+  EXPECT_EQ(
+      nav2("cells " + path_in(folder, "mask_keepout.yaml") + " " + path_in(folder, "space.txt")),
+      std::vector<double>{0});
   EXPECT_EQ(nav2("connected " + path_in(folder, "mask_keepout.yaml") + " " +
                  path_in(folder, "lanes.json") + " 1.9 " + path_in(folder, "space.txt")),
-            std::vector<double>{1});
+            std::vector<double>{0});
+  EXPECT_TRUE(std::any_of(cut_off.begin(), cut_off.end(), [](const ExportNote& note) {
+    return note.what == "ways to parking spaces" && note.count == 1;
+  }));
   for (const ExportNote& note : notes) EXPECT_NE(note.what, "overhead images");
 }
 
