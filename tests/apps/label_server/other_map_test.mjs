@@ -104,7 +104,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   });
   await page.reload();
   await stored(page);
-  await until(async () => (await left(page)).includes('1 change not saved: made on another map: garage'), 'changes of another place are told');
+  await until(async () => (await left(page)).includes('1 change not saved: made on another map, garage'), 'changes of another place are told');
   const lines = page.locator('#left li', { hasText: 'garage' });
   check((await lines.locator('button:text("Send")').count()) === 0, 'and cannot be sent here');
   page.on('dialog', (dialog) => dialog.accept());

@@ -6,7 +6,7 @@ import { isAsked, pause, subject, teach } from './hands.mjs';
 const roundOf = (page) => page.evaluate(async () => (await (await fetch('api/hypotheses')).json()).round);
 const lastRound = (page) => page.evaluate(async () => (await (await fetch('api/progress')).json()).rounds.at(-1));
 
-const questionsLeft = async (page) => Number((await page.textContent('#subject-text')).match(/(\d+) questions/)[1]);
+const questionsLeft = async (page) => Number((await page.textContent('#subject-text')).match(/(\d+) open questions/)[1]);
 
 await withPage(async ({ page, spaces, server }) => {
   await teach(page, spaces.slice(0, 4));

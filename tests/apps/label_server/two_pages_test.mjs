@@ -3,7 +3,7 @@
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { clickCorners, draw, hint, isAsked, status } from './hands.mjs';
 
-const waits = (page, count) => until(async () => (await status(page)).includes(`${count} not saved yet`), `${count} wait`);
+const waits = (page, count) => until(async () => (await status(page)).includes(`${count} change${count === 1 ? '' : 's'} not saved yet`), `${count} wait`);
 
 const boxAt = ([x, y, heading, length, width]) => ({ x, y, heading, length, width });
 
