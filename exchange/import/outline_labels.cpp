@@ -70,16 +70,18 @@ bool becomes_box(const LabelOutline& outline, const std::vector<LabelClass>& cla
 }
 
 // A new label in the shape of an outline; empty and a problem where no image shows its ground.
-std::optional<Label> label_in_map(const Map& map,
+std::optional<Label> label_in_map(const KeyframeIndex& keyframes,
                                   const LabelOutline& outline,
                                   const std::vector<LabelClass>& classes,
                                   const std::string& file,
                                   const std::optional<LabelAnchor>& now,
                                   std::vector<Problem>& problems) {
-  const auto anchor = anchor_for(map, outline.corners, now);
+  const Map& map = keyframes.map();
+  const auto anchor = anchor_for(keyframes, outline.corners, now);
   if (!anchor) {
     problems.push_back({Severity::kError, file, outline.line, outline.where,
-                        "ground that no image of the map shows whole", "some that one does"});
+                        "an area that no camera image shows completely",
+                        "an area that one image shows completely"});
     return std::nullopt;
   }
   Label label = becomes_box(outline, classes)
@@ -101,14 +103,15 @@ std::optional<Label> label_in_map(const Map& map,
 }
 
 // The label as an edit leaves it: as if a hand had moved it on the page.
-std::optional<Label> edited_label(const Map& map,
+std::optional<Label> edited_label(const KeyframeIndex& keyframes,
                                   const LabelEdit& edit,
                                   const std::vector<LabelClass>& classes,
                                   const std::string& file,
                                   std::vector<Problem>& problems) {
   Label label = edit.before;
   if (edit.shape) {
-    const auto drawn = label_in_map(map, edit.outline, classes, file, edit.before.anchor, problems);
+    const auto drawn =
+        label_in_map(keyframes, edit.outline, classes, file, edit.before.anchor, problems);
     if (!drawn) return std::nullopt;
     label = *drawn;
     label.id = edit.before.id;
@@ -130,11 +133,12 @@ NewLabels labels_of_outlines(const Map& map,
                              const std::string& file) {
   NewLabels labels;
   std::vector<Problem> problems;
+  const KeyframeIndex keyframes(map);
   for (const LabelOutline& outline : matched.fresh)
-    if (auto label = label_in_map(map, outline, classes, file, std::nullopt, problems))
+    if (auto label = label_in_map(keyframes, outline, classes, file, std::nullopt, problems))
       labels.created.push_back(std::move(*label));
   for (const LabelEdit& edit : matched.edits)
-    if (auto label = edited_label(map, edit, classes, file, problems))
+    if (auto label = edited_label(keyframes, edit, classes, file, problems))
       labels.changed.push_back(std::move(*label));
   if (!problems.empty()) throw BadInput(problems);
   return labels;

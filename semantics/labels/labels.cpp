@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/error.hpp"
 
@@ -69,9 +70,13 @@ std::optional<double> off_axis(const MountedCamera& mounted,
   return std::atan2(middle.head<2>().norm(), middle.z());
 }
 
-// Calls `found(anchor, angle)` for every image that sees all corners.
+constexpr double kCameraReachM = 5.0;  // distance between a camera and the vehicle's origin
+
+// Calls `found(anchor, angle)` for every image that sees all corners. Tests all keyframes if
+// `index` is null.
 template <class Found>
 void for_each_view(const Map& map,
+                   const KeyframeIndex* index,
                    const std::vector<Eigen::Vector2d>& corners,
                    const AnchorOptions& options,
                    const Found& found) {
@@ -79,12 +84,13 @@ void for_each_view(const Map& map,
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const auto& corner : corners) middle += corner / static_cast<double>(corners.size());
   const auto bodies = bodies_of(map);
-  constexpr double kCameraReachM = 5.0;  // distance between a camera and the vehicle's origin
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+  const double reach_m = options.max_range_m + kCameraReachM;
+  const auto near = index != nullptr ? index->within(middle, reach_m) : std::vector<std::size_t>();
+  const std::size_t count = index != nullptr ? near.size() : map.keyframes.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t k = index != nullptr ? near[i] : i;
     const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(static_cast<int>(k));
-    if ((T_map_vehicle.translation().head<2>() - middle).norm() >
-        options.max_range_m + kCameraReachM)
-      continue;
+    if ((T_map_vehicle.translation().head<2>() - middle).norm() > reach_m) continue;
     std::vector<Eigen::Vector3d> points;
     for (const auto& corner : corners) points.push_back(on_vehicle_plane(T_map_vehicle, corner));
     points.push_back(on_vehicle_plane(T_map_vehicle, middle));
@@ -98,6 +104,33 @@ void for_each_view(const Map& map,
       if (const auto angle = off_axis(cameras[c], points, options.max_range_m))
         found(LabelAnchor{keyframe.session, keyframe.t_ns, static_cast<int>(c)}, *angle);
   }
+}
+
+std::optional<LabelAnchor> most_central(const Map& map,
+                                        const KeyframeIndex* index,
+                                        const std::vector<Eigen::Vector2d>& corners,
+                                        const AnchorOptions& options) {
+  std::optional<LabelAnchor> best;
+  double least = std::numeric_limits<double>::max();
+  double of_now = std::numeric_limits<double>::max();
+  for_each_view(map, index, corners, options, [&](const LabelAnchor& view, double angle) {
+    if (options.now == view) of_now = angle;
+    if (angle >= least) return;
+    least = angle;
+    best = view;
+  });
+  return best && of_now <= least + options.as_central_rad ? options.now : best;
+}
+
+std::optional<LabelAnchor> near_or_far_anchor(const Map& map,
+                                              const KeyframeIndex* index,
+                                              const std::vector<Eigen::Vector2d>& corners,
+                                              const std::optional<LabelAnchor>& now) {
+  constexpr double kFarthestM = 30.0;
+  AnchorOptions options{.now = now};
+  if (auto near = most_central(map, index, corners, options)) return near;
+  options.max_range_m = kFarthestM;
+  return most_central(map, index, corners, options);
 }
 
 }  // namespace
@@ -225,16 +258,7 @@ Label label_of_polygon(const Map& map,
 std::optional<LabelAnchor> most_central_view(const Map& map,
                                              const std::vector<Eigen::Vector2d>& corners,
                                              const AnchorOptions& options) {
-  std::optional<LabelAnchor> best;
-  double least = std::numeric_limits<double>::max();
-  double of_now = std::numeric_limits<double>::max();
-  for_each_view(map, corners, options, [&](const LabelAnchor& view, double angle) {
-    if (options.now == view) of_now = angle;
-    if (angle >= least) return;
-    least = angle;
-    best = view;
-  });
-  return best && of_now <= least + options.as_central_rad ? options.now : best;
+  return most_central(map, nullptr, corners, options);
 }
 
 std::vector<LabelAnchor> central_views(const Map& map,
@@ -242,7 +266,7 @@ std::vector<LabelAnchor> central_views(const Map& map,
                                        int session,
                                        const AnchorOptions& options) {
   std::vector<std::pair<double, LabelAnchor>> views;
-  for_each_view(map, corners, options, [&](const LabelAnchor& view, double angle) {
+  for_each_view(map, nullptr, corners, options, [&](const LabelAnchor& view, double angle) {
     if (view.session == session) views.emplace_back(angle, view);
   });
   std::stable_sort(views.begin(), views.end(),
@@ -263,11 +287,13 @@ std::vector<LabelAnchor> central_views(const Map& map,
 std::optional<LabelAnchor> anchor_for(const Map& map,
                                       const std::vector<Eigen::Vector2d>& corners,
                                       const std::optional<LabelAnchor>& now) {
-  constexpr double kFarthestM = 30.0;
-  AnchorOptions options{.now = now};
-  if (auto near = most_central_view(map, corners, options)) return near;
-  options.max_range_m = kFarthestM;
-  return most_central_view(map, corners, options);
+  return near_or_far_anchor(map, nullptr, corners, now);
+}
+
+std::optional<LabelAnchor> anchor_for(const KeyframeIndex& keyframes,
+                                      const std::vector<Eigen::Vector2d>& corners,
+                                      const std::optional<LabelAnchor>& now) {
+  return near_or_far_anchor(keyframes.map(), &keyframes, corners, now);
 }
 
 }  // namespace roadbook

@@ -10,6 +10,7 @@
 #include "base/se3.hpp"
 #include "mapping/map.hpp"
 #include "mapping/session_track.hpp"
+#include "semantics/labels/keyframe_index.hpp"
 #include "semantics/oriented_box.hpp"
 #include "semantics/people/person_camera.hpp"
 
@@ -185,6 +186,11 @@ struct AnchorOptions {
 /// `most_central_view` within 12 m; if there is none, within 30 m.
 [[nodiscard]] std::optional<LabelAnchor> anchor_for(
     const Map& map,
+    const std::vector<Eigen::Vector2d>& corners,
+    const std::optional<LabelAnchor>& now = std::nullopt);
+/// The same result, without a scan of all keyframes: for many labels of one map.
+[[nodiscard]] std::optional<LabelAnchor> anchor_for(
+    const KeyframeIndex& keyframes,
     const std::vector<Eigen::Vector2d>& corners,
     const std::optional<LabelAnchor>& now = std::nullopt);
 

@@ -109,6 +109,17 @@ TEST(Labels, HangOnTheImageInWhichTheyAreMostCentral) {
   EXPECT_FALSE(most_central_view(map, {Eigen::Vector2d(500.0, 500.0)}));
 }
 
+TEST(Labels, AnIndexOfTheKeyframesGivesTheSameAnchors) {
+  const Map map = test::label_map(60);
+  const KeyframeIndex keyframes(map);
+  for (double x = -40.0; x < 80.0; x += 1.7)
+    for (const double y : {-30.0, -5.0, 3.0, 4.0, 14.0}) {
+      const auto box = OrientedBox{{x, y}, 1.5, 5.0, 2.5}.corners();
+      const std::vector<Eigen::Vector2d> corners(box.begin(), box.end());
+      EXPECT_EQ(anchor_for(keyframes, corners), anchor_for(map, corners)) << x << " " << y;
+    }
+}
+
 TEST(Labels, AnAnchorThatTheMapLacksHasNoPlace) {
   const Map map = test::label_map(5);
   EXPECT_FALSE(keyframe_of(map, {0, 12345, 0}));
