@@ -5,12 +5,12 @@
 #include "apps/evaluate.hpp"
 #include "apps/evaluation/pictures/label_pictures.hpp"
 #include "apps/evaluation/pictures/painted_lot.hpp"
-#include "apps/oracle_json.hpp"
 #include "apps/report/chart.hpp"
 #include "base/format.hpp"
 #include "base/whole_file.hpp"
 #include "semantics/detector/gp_laplace.hpp"
 #include "semantics/detector/label_oracle.hpp"
+#include "workflows/labels/oracle_json.hpp"
 
 namespace roadbook {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 
-#include "apps/label_server/people_images.hpp"
+#include "workflows/labels/people_images.hpp"
 
 namespace roadbook {
 namespace {

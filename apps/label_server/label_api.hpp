@@ -9,11 +9,11 @@
 #include "apps/label_server/http/event_hub.hpp"
 #include "apps/label_server/http/http_message.hpp"
 #include "apps/label_server/http/tile_pyramid.hpp"
-#include "apps/label_server/label_place.hpp"
 #include "apps/label_server/label_service.hpp"
 #include "apps/label_server/learning.hpp"
 #include "apps/label_server/marking_check.hpp"
 #include "apps/label_server/people_learning.hpp"
+#include "workflows/labels/label_place.hpp"
 
 namespace roadbook {
 

@@ -8,12 +8,12 @@
 
 #include "apps/label_server/http/event_hub.hpp"
 #include "apps/label_server/label_answers.hpp"
-#include "apps/label_server/label_boxes.hpp"
 #include "apps/label_server/label_entry.hpp"
-#include "apps/label_server/people_images.hpp"
 #include "semantics/labels/label_classes.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "semantics/oriented_box.hpp"
+#include "workflows/labels/label_boxes.hpp"
+#include "workflows/labels/people_images.hpp"
 
 namespace roadbook {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/label_server/label_boxes.hpp"
 #include "apps/label_server/label_wire.hpp"
-#include "apps/label_server/round_replay.hpp"
 #include "base/wall_clock.hpp"
 #include "semantics/detector/gp_laplace.hpp"
+#include "workflows/labels/label_boxes.hpp"
+#include "workflows/labels/round_replay.hpp"
 
 namespace roadbook {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "apps/label_server/http/event_hub.hpp"
 #include "apps/label_server/label_service.hpp"
-#include "apps/label_server/learning_record.hpp"
 #include "apps/label_server/round_worker.hpp"
 #include "semantics/detector/box_learner.hpp"
 #include "semantics/detector/box_snap.hpp"
+#include "workflows/labels/learning_record.hpp"
 
 namespace roadbook {
 

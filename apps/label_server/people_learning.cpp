@@ -7,15 +7,15 @@
 #include <limits>
 #include <numeric>
 
-#include "apps/label_server/hard_negatives.hpp"
 #include "apps/label_server/label_wire.hpp"
-#include "apps/label_server/people_training.hpp"
 #include "apps/label_server/people_wire.hpp"
 #include "base/parallel.hpp"
 #include "base/wall_clock.hpp"
 #include "semantics/detector/gp_laplace.hpp"
 #include "semantics/detector/search_prior.hpp"
 #include "semantics/people/person_labels.hpp"
+#include "workflows/labels/hard_negatives.hpp"
+#include "workflows/labels/people_training.hpp"
 
 namespace roadbook {
 namespace {

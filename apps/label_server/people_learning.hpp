@@ -9,9 +9,9 @@
 
 #include "apps/label_server/http/event_hub.hpp"
 #include "apps/label_server/label_service.hpp"
-#include "apps/label_server/people_images.hpp"
-#include "apps/label_server/people_record.hpp"
 #include "apps/label_server/round_worker.hpp"
+#include "workflows/labels/people_images.hpp"
+#include "workflows/labels/people_record.hpp"
 
 namespace roadbook {
 

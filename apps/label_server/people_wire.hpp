@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "apps/label_server/people_images.hpp"
+#include "workflows/labels/people_images.hpp"
 
 namespace roadbook {
 

@@ -7,12 +7,12 @@
 
 #include "apps/label_server/http/page_files.hpp"
 #include "apps/label_server/label_api.hpp"
-#include "apps/label_server/runs/label_examples.hpp"
 #include "apps/user_name.hpp"
 #include "base/error.hpp"
 #include "semantics/labels/label_drives.hpp"
 #include "semantics/labels/label_layers.hpp"
 #include "workflows/drive_images.hpp"
+#include "workflows/labels/label_examples.hpp"
 #include "workflows/people/people_detect.hpp"
 #include "workflows/session_drives.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/label_server/learning_record.hpp"
-#include "apps/label_server/people_record.hpp"
+#include "workflows/labels/learning_record.hpp"
+#include "workflows/labels/people_record.hpp"
 
 namespace roadbook {
 

@@ -1,10 +1,10 @@
 #include <memory>
 
 #include "apps/drive_option.hpp"
-#include "apps/label_server/taught_people.hpp"
 #include "apps/summaries/detect_summary.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
+#include "workflows/labels/taught_people.hpp"
 
 namespace roadbook {
 namespace {

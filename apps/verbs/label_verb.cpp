@@ -3,12 +3,12 @@
 
 #include "apps/drive_option.hpp"
 #include "apps/label_server/http/token_file.hpp"
-#include "apps/label_server/runs/label_look_again.hpp"
-#include "apps/label_server/runs/label_oracle_run.hpp"
-#include "apps/label_server/runs/label_replay_run.hpp"
 #include "apps/label_server/serve_labels.hpp"
 #include "apps/verb.hpp"
 #include "semantics/labels/label_store.hpp"
+#include "workflows/labels/label_look_again.hpp"
+#include "workflows/labels/label_oracle_run.hpp"
+#include "workflows/labels/label_replay_run.hpp"
 
 namespace roadbook {
 namespace {
@@ -26,23 +26,25 @@ struct LabelCommand {
 };
 
 ExitStatus play(const LabelCommand& command, Console& console, const CommonOptions& common) {
-  run_oracle(
+  console.result(run_oracle(
       {command.server.map, command.oracle, question_policy(command.questions),
        negative_policy(command.negatives), command.server.classifier, command.seed, common.threads},
-      console);
+      console));
   return ExitStatus::kDone;
 }
 
 ExitStatus run_label(const LabelCommand& command, Console& console, const CommonOptions& common) {
   if (!command.oracle.empty()) return play(command, console, common);
   if (command.look_again) {
-    run_look_again(command.server.map, command.server.drives, console);
+    console.result(run_look_again(command.server.map, command.server.drives, console));
     return ExitStatus::kDone;
   }
-  if (command.replay)
-    return run_replay(command.server.map, command.server.drives, common.threads, console)
-               ? ExitStatus::kDone
-               : ExitStatus::kRefused;
+  if (command.replay) {
+    const auto result =
+        run_replay(command.server.map, command.server.drives, common.threads, console);
+    console.result(result);
+    return result.at("same").get<bool>() ? ExitStatus::kDone : ExitStatus::kRefused;
+  }
   HttpServerOptions server_options;
   server_options.port = command.port;
   if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);

@@ -5,11 +5,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "apps/oracle_json.hpp"
 #include "apps/report/chart.hpp"
 #include "base/error.hpp"
 #include "base/format.hpp"
 #include "base/whole_file.hpp"
+#include "workflows/labels/oracle_json.hpp"
 
 namespace roadbook {
 namespace {

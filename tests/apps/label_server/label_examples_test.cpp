@@ -1,4 +1,4 @@
-#include "apps/label_server/runs/label_examples.hpp"
+#include "workflows/labels/label_examples.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,13 +6,13 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apps/label_server/label_place.hpp"
-#include "apps/label_server/runs/label_oracle_run.hpp"
 #include "base/error.hpp"
 #include "semantics/detector/label_oracle.hpp"
 #include "semantics/labels/label_classes.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "tests/apps/label_server/lot.hpp"
+#include "workflows/labels/label_oracle_run.hpp"
+#include "workflows/labels/label_place.hpp"
 
 namespace roadbook {
 namespace {

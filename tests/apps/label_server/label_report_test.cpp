@@ -8,6 +8,8 @@
 #include "tests/apps/run_command.hpp"
 #include "tests/semantics/label_map.hpp"
 #include "tests/semantics/label_store_fixture.hpp"
+#include "workflows/labels/learning_record.hpp"
+#include "workflows/labels/people_record.hpp"
 
 // What `roadbook report --before` reports about labels, from two map files to page and result.
 

@@ -4,15 +4,15 @@
 #include <string>
 
 #include "apps/label_server/anchor_views.hpp"
-#include "apps/label_server/label_place.hpp"
 #include "apps/label_server/label_wire.hpp"
 #include "apps/label_server/learning.hpp"
-#include "apps/label_server/people_record.hpp"
-#include "apps/label_server/runs/label_examples.hpp"
 #include "base/random.hpp"
 #include "exchange/layers/friction_layers.hpp"
 #include "mapping/store/existing_map.hpp"
 #include "tests/apps/label_server/lot.hpp"
+#include "workflows/labels/label_examples.hpp"
+#include "workflows/labels/label_place.hpp"
+#include "workflows/labels/people_record.hpp"
 #include "workflows/people/people_store.hpp"
 
 // What was taught and learnt stays in the map when it is built again from its drives.

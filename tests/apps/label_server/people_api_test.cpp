@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
 #include "apps/label_server/people_wire.hpp"
-#include "apps/label_server/taught_people.hpp"
 #include "semantics/detector/gp_classifier.hpp"
 #include "semantics/people/person_labels.hpp"
 #include "tests/apps/label_server/people_served.hpp"
+#include "workflows/labels/taught_people.hpp"
 #include "workflows/people/people_store.hpp"
 
 // Teaching people through the server's requests.

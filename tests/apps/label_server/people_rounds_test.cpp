@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include "apps/label_server/people_training.hpp"
 #include "apps/label_server/people_wire.hpp"
-#include "apps/label_server/runs/label_replay_run.hpp"
-#include "apps/label_server/taught_people.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/people/person_labels.hpp"
 #include "tests/apps/label_server/people_served.hpp"
+#include "workflows/labels/label_replay_run.hpp"
+#include "workflows/labels/people_training.hpp"
+#include "workflows/labels/taught_people.hpp"
 #include "workflows/people/people_detect.hpp"
 #include "workflows/people/people_store.hpp"
 

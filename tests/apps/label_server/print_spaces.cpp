@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "apps/label_server/label_place.hpp"
 #include "mapping/store/map_file.hpp"
+#include "workflows/labels/label_place.hpp"
 #include "workflows/people/truth_scene.hpp"
 
 // print_spaces MAP SESSION DRIVE: the parking spaces of a simulated drive where the map has them,

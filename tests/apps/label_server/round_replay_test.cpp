@@ -1,4 +1,4 @@
-#include "apps/label_server/round_replay.hpp"
+#include "workflows/labels/round_replay.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -6,10 +6,10 @@
 #include <chrono>
 #include <thread>
 
-#include "apps/label_server/label_place.hpp"
 #include "apps/label_server/learning.hpp"
-#include "apps/label_server/runs/label_replay_run.hpp"
 #include "tests/apps/label_server/lot.hpp"
+#include "workflows/labels/label_place.hpp"
+#include "workflows/labels/label_replay_run.hpp"
 
 // Replays the rounds of a session from the map's list of events: after a restart of the server, and
 // with one click left out.

@@ -1,12 +1,12 @@
-#include "apps/label_server/runs/label_replay_run.hpp"
+#include "workflows/labels/label_replay_run.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "apps/label_server/label_place.hpp"
-#include "apps/label_server/people_training.hpp"
-#include "apps/label_server/round_replay.hpp"
-#include "apps/label_server/runs/label_examples.hpp"
 #include "mapping/store/map_file.hpp"
+#include "workflows/labels/label_examples.hpp"
+#include "workflows/labels/label_place.hpp"
+#include "workflows/labels/people_training.hpp"
+#include "workflows/labels/round_replay.hpp"
 #include "workflows/people/people_detect.hpp"
 #include "workflows/session_drives.hpp"
 
@@ -57,7 +57,7 @@ ordered_json replay_ground(const std::filesystem::path& map,
                            const LabelPlace& place,
                            const std::vector<LabelEvent>& events,
                            int num_threads,
-                           Console& console,
+                           const Messages& messages,
                            bool& all_same) {
   const auto rounds = record_from_text(place.learnt_record).rounds;
   ExamplesByKind taught = stored_examples(map);
@@ -70,9 +70,9 @@ ordered_json replay_ground(const std::filesystem::path& map,
     std::optional<std::string> now;
     if (round.basis == basis)
       now = replayed_classifier(poses, place.image, taught[round.kind], options, events, rounds, i);
-    console.say("round " + std::to_string(round.number) + ", " + round.kind + ", " +
-                std::to_string(round.event) + " changes: classifier " + round.classifier + ", " +
-                ground_verdict(round, basis, now.value_or("")));
+    messages.say("round " + std::to_string(round.number) + ", " + round.kind + ", " +
+                 std::to_string(round.event) + " changes: classifier " + round.classifier + ", " +
+                 ground_verdict(round, basis, now.value_or("")));
     list.push_back(with_replayed({{"round", round.number},
                                   {"class", round.kind},
                                   {"event", round.event},
@@ -87,16 +87,16 @@ ordered_json replay_people(const PeopleImages& images,
                            const LabelPlace& place,
                            const std::vector<LabelEvent>& events,
                            const PersonLearnerOptions& options,
-                           Console& console,
+                           const Messages& messages,
                            bool& all_same) {
   const auto& rounds = place.people_record.rounds;
   const auto replayed = replayed_people(images, place.people, options, events, rounds);
   ordered_json list = ordered_json::array();
   for (std::size_t i = 0; i < rounds.size(); ++i) {
     const PeopleRound& round = rounds[i];
-    console.say("round " + std::to_string(round.number) + ", people, " +
-                std::to_string(round.event) + " changes: classifier " + round.classifier + ", " +
-                people_verdict(round, replayed[i]));
+    messages.say("round " + std::to_string(round.number) + ", people, " +
+                 std::to_string(round.event) + " changes: classifier " + round.classifier + ", " +
+                 people_verdict(round, replayed[i]));
     list.push_back(with_replayed({{"round", round.number},
                                   {"event", round.event},
                                   {"persons", round.persons},
@@ -109,10 +109,10 @@ ordered_json replay_people(const PeopleImages& images,
 
 }  // namespace
 
-bool run_replay(const std::filesystem::path& map,
-                const std::vector<std::filesystem::path>& given_drives,
-                int num_threads,
-                Console& console) {
+ordered_json run_replay(const std::filesystem::path& map,
+                        const std::vector<std::filesystem::path>& given_drives,
+                        int num_threads,
+                        const Messages& messages) {
   const LabelPlace place = read_label_place(map);
   const bool any_of_people = !place.people_record.rounds.empty();
   if (record_from_text(place.learnt_record).rounds.empty() && !any_of_people)
@@ -122,17 +122,16 @@ bool run_replay(const std::filesystem::path& map,
   const auto events = read_label_events(map);
   bool all_same = true;
   const ordered_json ground =
-      replay_ground(map, poses, place, events, num_threads, console, all_same);
+      replay_ground(map, poses, place, events, num_threads, messages, all_same);
   ordered_json people = ordered_json::array();
   if (any_of_people) {
     PeopleDetectOptions options;
     options.learner.num_threads = num_threads;
-    const auto drives = open_session_drives(map, poses, given_drives, console);
+    const auto drives = open_session_drives(map, poses, given_drives, messages);
     const PeopleImages images(&poses, &drives, options.learner, options.every_s);
-    people = replay_people(images, place, events, options.learner, console, all_same);
+    people = replay_people(images, place, events, options.learner, messages, all_same);
   }
-  console.result({{"rounds", ground}, {"people", people}, {"same", all_same}});
-  return all_same;
+  return {{"rounds", ground}, {"people", people}, {"same", all_same}};
 }
 
 }  // namespace roadbook

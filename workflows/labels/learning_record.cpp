@@ -1,4 +1,4 @@
-#include "apps/label_server/learning_record.hpp"
+#include "workflows/labels/learning_record.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,11 +1,11 @@
-#include "apps/label_server/runs/label_examples.hpp"
+#include "workflows/labels/label_examples.hpp"
 
-#include "apps/label_server/label_place.hpp"
 #include "base/error.hpp"
 #include "exchange/layers/feature_column.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/labels/label_classes.hpp"
 #include "semantics/labels/label_store.hpp"
+#include "workflows/labels/label_place.hpp"
 
 namespace roadbook {
 namespace {

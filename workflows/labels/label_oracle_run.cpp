@@ -1,16 +1,16 @@
-#include "apps/label_server/runs/label_oracle_run.hpp"
+#include "workflows/labels/label_oracle_run.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "apps/label_server/label_place.hpp"
-#include "apps/label_server/runs/label_examples.hpp"
-#include "apps/oracle_json.hpp"
 #include "base/format.hpp"
 #include "drive/drive.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/detector/label_oracle.hpp"
+#include "workflows/labels/label_examples.hpp"
+#include "workflows/labels/label_place.hpp"
+#include "workflows/labels/oracle_json.hpp"
 #include "workflows/people/truth_scene.hpp"
 
 namespace roadbook {
@@ -58,7 +58,7 @@ OracleOptions oracle_run_options(const OracleRequest& request) {
 
 }  // namespace
 
-void run_oracle(const OracleRequest& request, Console& console) {
+nlohmann::ordered_json run_oracle(const OracleRequest& request, const Messages& messages) {
   const LabelPlace place = read_label_place(request.map);
   if (!place.has_picture()) throw BadInput(no_overhead_image(request.map));
   // Check the options before reading the drive, because reading may take minutes.
@@ -75,14 +75,14 @@ void run_oracle(const OracleRequest& request, Console& console) {
   const OracleResult result = play_oracle(place.image, truth, options);
   int number = 0;
   for (const OracleRound& r : result.rounds)
-    console.say("round " + std::to_string(++number) + ": " + std::to_string(r.drawn) + " drawn, " +
-                std::to_string(r.put_right) + " corrected, " + std::to_string(r.clicks) +
-                " clicks, " + std::to_string(r.found) + " found, precision " +
-                fixed(r.precision, 3) + ", recall " + fixed(r.recall, 3) + ", " +
-                fixed(r.seconds, 1) + " s, classifier " + r.classifier);
-  console.result({{"spaces", truth.size()},
-                  {"rounds", oracle_rounds_json(result.rounds)},
-                  {"area_under_curve", result.area_under_curve()}});
+    messages.say("round " + std::to_string(++number) + ": " + std::to_string(r.drawn) + " drawn, " +
+                 std::to_string(r.put_right) + " corrected, " + std::to_string(r.clicks) +
+                 " clicks, " + std::to_string(r.found) + " found, precision " +
+                 fixed(r.precision, 3) + ", recall " + fixed(r.recall, 3) + ", " +
+                 fixed(r.seconds, 1) + " s, classifier " + r.classifier);
+  return {{"spaces", truth.size()},
+          {"rounds", oracle_rounds_json(result.rounds)},
+          {"area_under_curve", result.area_under_curve()}};
 }
 
 QuestionPolicy question_policy(const std::string& name) {

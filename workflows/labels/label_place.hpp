@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/label_server/people_record.hpp"
 #include "base/error.hpp"
 #include "mapping/map.hpp"
 #include "semantics/labels/label_classes.hpp"
 #include "semantics/labels/label_sightings.hpp"
 #include "semantics/overhead/ground_image.hpp"
 #include "semantics/people/person_learner.hpp"
+#include "workflows/labels/people_record.hpp"
 
 namespace roadbook {
 

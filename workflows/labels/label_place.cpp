@@ -1,12 +1,12 @@
-#include "apps/label_server/label_place.hpp"
+#include "workflows/labels/label_place.hpp"
 
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "apps/label_server/learning_record.hpp"
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "mapping/layers/map_layers.hpp"
+#include "workflows/labels/learning_record.hpp"
 #include "workflows/people/people_store.hpp"
 
 namespace roadbook {

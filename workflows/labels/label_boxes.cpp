@@ -1,4 +1,4 @@
-#include "apps/label_server/label_boxes.hpp"
+#include "workflows/labels/label_boxes.hpp"
 
 #include <map>
 

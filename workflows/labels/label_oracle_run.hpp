@@ -2,9 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "apps/console.hpp"
+#include "base/messages.hpp"
 #include "semantics/detector/box_learner.hpp"
 
 namespace roadbook {
@@ -22,10 +23,12 @@ struct OracleRequest {
   int num_threads = 0;
 };
 
-/// Runs the rounds of `play_oracle` for the parking spaces. Prints the effort and the result of
-/// each round (design.md: `rounds`, a list of `drawn`, `clicks`, `precision`, `recall`). The map
-/// does not change. Throws BadInput.
-void run_oracle(const OracleRequest& request, Console& console);
+/// Runs the rounds of `play_oracle` for the parking spaces. A message reports the effort and the
+/// result of each round. Returns the result that `--json` prints: `spaces`, `rounds` (a list of
+/// `drawn`, `clicks`, `precision`, `recall`), `area_under_curve`. The map does not change. Throws
+/// BadInput.
+[[nodiscard]] nlohmann::ordered_json run_oracle(const OracleRequest& request,
+                                                const Messages& messages);
 
 /// Return the policies with the names in `--questions` (telling, uncertain, random) and
 /// `--negatives` (random, rejected). They throw InvalidOption.

@@ -1,4 +1,4 @@
-#include "apps/label_server/hard_negatives.hpp"
+#include "workflows/labels/hard_negatives.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,10 @@
-#include "apps/label_server/taught_people.hpp"
+#include "workflows/labels/taught_people.hpp"
 
 #include <vector>
 
-#include "apps/label_server/hard_negatives.hpp"
+#include "semantics/labels/label_store.hpp"
+#include "semantics/people/person_labels.hpp"
+#include "workflows/labels/hard_negatives.hpp"
 
 namespace roadbook {
 

@@ -1,4 +1,4 @@
-#include "apps/label_server/people_record.hpp"
+#include "workflows/labels/people_record.hpp"
 
 #include <nlohmann/json.hpp>
 

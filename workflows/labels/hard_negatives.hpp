@@ -3,8 +3,8 @@
 #include <set>
 #include <vector>
 
-#include "apps/label_server/people_images.hpp"
-#include "apps/label_server/people_record.hpp"
+#include "workflows/labels/people_images.hpp"
+#include "workflows/labels/people_record.hpp"
 
 namespace roadbook {
 

@@ -1,4 +1,4 @@
-#include "apps/label_server/people_images.hpp"
+#include "workflows/labels/people_images.hpp"
 
 #include <algorithm>
 

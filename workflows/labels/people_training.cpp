@@ -1,12 +1,12 @@
-#include "apps/label_server/people_training.hpp"
+#include "workflows/labels/people_training.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "apps/label_server/hard_negatives.hpp"
 #include "base/digest.hpp"
 #include "semantics/people/person_labels.hpp"
+#include "workflows/labels/hard_negatives.hpp"
 
 namespace roadbook {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/label_server/learning_record.hpp"
 #include "mapping/map.hpp"
 #include "semantics/detector/box_learner.hpp"
 #include "semantics/labels/label_store.hpp"
+#include "workflows/labels/learning_record.hpp"
 
 namespace roadbook {
 

@@ -1,11 +1,11 @@
-#include "apps/label_server/round_replay.hpp"
+#include "workflows/labels/round_replay.hpp"
 
 #include <algorithm>
 #include <iterator>
 
-#include "apps/label_server/label_boxes.hpp"
-#include "apps/label_server/label_place.hpp"
 #include "base/digest.hpp"
+#include "workflows/labels/label_boxes.hpp"
+#include "workflows/labels/label_place.hpp"
 
 namespace roadbook {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/label_server/people_images.hpp"
-#include "apps/label_server/people_record.hpp"
 #include "semantics/labels/label_store.hpp"
+#include "workflows/labels/people_images.hpp"
+#include "workflows/labels/people_record.hpp"
 
 namespace roadbook {
 
