@@ -7,8 +7,8 @@
 
 #include "apps/label_server/learning_record.hpp"
 #include "apps/label_server/people_record.hpp"
-#include "apps/label_server/runs/label_examples.hpp"
 #include "semantics/labels/label_sightings.hpp"
+#include "workflows/labels/label_examples.hpp"
 
 namespace roadbook {
 namespace {
