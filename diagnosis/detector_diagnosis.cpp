@@ -27,7 +27,7 @@ Diagnosis diagnose_detector(const std::vector<DriveSightings>& drives,
                             const LibraryOptions& library,
                             const EffectSizes& known) {
   const double falls = effect_size(known, "detector", "range");
-  std::vector<std::unique_ptr<FootProblem>> feet;
+  std::vector<std::unique_ptr<FootPositionProblem>> feet;
   std::vector<std::unique_ptr<RecallProblem>> recall;
   std::vector<SessionProblem> of_feet, of_recall;
   std::vector<std::string> notes;
@@ -37,7 +37,7 @@ Diagnosis diagnose_detector(const std::vector<DriveSightings>& drives,
     };
     for (const std::string& text : drive.readings->notes) note(text);
     const std::vector<PersonTrack> tracks = person_tracks(*drive.readings);
-    feet.push_back(std::make_unique<FootProblem>(*drive.readings, tracks, library));
+    feet.push_back(std::make_unique<FootPositionProblem>(*drive.readings, tracks, library));
     recall.push_back(std::make_unique<RecallProblem>(*drive.readings, tracks, library, falls));
     if (feet.back()->usable())
       of_feet.push_back({drive.name, feet.back().get()});

@@ -120,7 +120,7 @@ OracleAnswer ask_oracle(const DriveReadings& readings, const EffectSizes& hidden
   if (!readings.ranges.samples.empty()) add_answer(of_ranges(readings.ranges, hidden), all);
   if (readings.people.looks.empty()) return all;
   const auto tracks = person_tracks(readings.people);
-  const FootProblem feet(readings.people, tracks, library);
+  const FootPositionProblem feet(readings.people, tracks, library);
   if (feet.usable()) add_answer(of_problem(feet, hidden), all);
   const RecallProblem recall(readings.people, tracks, library);
   if (recall.usable()) add_answer(of_problem(recall, hidden), all);

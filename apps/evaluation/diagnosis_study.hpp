@@ -52,7 +52,7 @@ struct StudiedDrive {
   }
   /// For a drive whose effect is not in the catalogue: the true effect fits better than the answer
   /// by less than the limit of a confounded set, so that no method could separate them.
-  [[nodiscard]] bool no_method_could_tell() const {
+  [[nodiscard]] bool is_indistinguishable() const {
     return oracle.gain - found.fit_gain < kConfoundedLoss;
   }
   /// First name, "unknown: HOOK ~ COVARIATE", or "nothing".

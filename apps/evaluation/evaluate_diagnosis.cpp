@@ -174,7 +174,7 @@ struct Tally {
     } else if (d.removed) {
       ++removed;
       silent += d.unflagged() ? 1 : 0;
-      alike += d.unflagged() && d.no_method_could_tell() ? 1 : 0;
+      alike += d.unflagged() && d.is_indistinguishable() ? 1 : 0;
     } else if (d.effect.empty()) {
       ++nulls;
       alarms += d.silent() ? 0 : 1;
@@ -192,7 +192,7 @@ struct Tally {
                      {"strong", strong},
                      {"strong_both_named", strong_both}};
     json["cause_removed"] = {
-        {"drives", removed}, {"unflagged_names", silent}, {"of_these_no_method_could_tell", alike}};
+        {"drives", removed}, {"unflagged_names", silent}, {"of_these_indistinguishable", alike}};
   }
   void say(const std::string& name, Console& console) const {
     console.say(name + ": in the set " + fixed(100.0 * share(score.in_set, score.drives), 1) +

@@ -13,7 +13,7 @@ using Eigen::Index;
 // Sets the lines of sight through positions smoothed by the same motion model that projects the
 // paths out. Errors of these positions are then uncorrelated with the innovations. Another smoother
 // would correlate them, and their always positive product would look like a position bias of 5 mm.
-void FootProblem::aim() {
+void FootPositionProblem::aim() {
   for (const Person& person : people_) {
     const PersonMotion motion{person.stands ? 1e-3 : kWalking, noise_.memory_s, noise_.shift};
     std::vector<PlacedFeet> seen;
@@ -34,7 +34,7 @@ void FootProblem::aim() {
 
 // Log likelihood with the catalogued effect and a bias proportional to range free, both with their
 // priors.
-double FootProblem::log_likelihood(const Noise& noise, Eigen::Vector2d* sizes) const {
+double FootPositionProblem::log_likelihood(const Noise& noise, Eigen::Vector2d* sizes) const {
   const double tau = detector_effect(kName).tau;
   Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(static_cast<Index>(rows()), 3);
   sides.col(0) = readings();
@@ -54,7 +54,7 @@ double FootProblem::log_likelihood(const Noise& noise, Eigen::Vector2d* sizes) c
 }
 
 // Decides by likelihood whether each pedestrian stands or walks, with the estimated bias removed.
-void FootProblem::classify_standing(const Eigen::Vector2d& sizes) {
+void FootPositionProblem::classify_standing(const Eigen::Vector2d& sizes) {
   Eigen::MatrixXd left = readings();
   for (std::size_t i = 0; i < places_.size(); ++i)
     left(static_cast<Index>(2 * i), 0) -= sizes[0] + sizes[1] * moments_[i].range_m;
@@ -79,7 +79,7 @@ void FootProblem::classify_standing(const Eigen::Vector2d& sizes) {
 
 // Variance inflation by pedestrians that turn round or were mixed up: the squared score of each
 // pedestrian over its expected value.
-double FootProblem::over_dispersion(const Eigen::Vector2d& sizes) const {
+double FootPositionProblem::over_dispersion(const Eigen::Vector2d& sizes) const {
   Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(static_cast<Index>(rows()), 2);
   sides.col(0) = readings();
   for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -99,7 +99,7 @@ double FootProblem::over_dispersion(const Eigen::Vector2d& sizes) const {
   return std::max(1.0, seen / std::max(expected, 1e-12));
 }
 
-void FootProblem::estimate_noise() {
+void FootPositionProblem::estimate_noise() {
   struct Knob {
     double Noise::*value;
     double low, high;

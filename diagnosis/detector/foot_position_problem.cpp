@@ -16,9 +16,9 @@ constexpr std::size_t kFewestPeople = 3;
 
 }  // namespace
 
-FootProblem::FootProblem(const SightingReadings& readings,
-                         const std::vector<PersonTrack>& tracks,
-                         LibraryOptions library)
+FootPositionProblem::FootPositionProblem(const SightingReadings& readings,
+                                         const std::vector<PersonTrack>& tracks,
+                                         LibraryOptions library)
     : library_(std::move(library)) {
   for (const PersonTrack& track : tracks) {
     if (track.sightings.size() < kFewestSightings) continue;
@@ -57,11 +57,11 @@ FootProblem::FootProblem(const SightingReadings& readings,
   }
 }
 
-std::vector<ChannelName> FootProblem::channels() const {
+std::vector<ChannelName> FootPositionProblem::channels() const {
   return {{"detector", "feet along the line of sight"}, {"detector", "feet across it"}};
 }
 
-Eigen::VectorXd FootProblem::readings() const {
+Eigen::VectorXd FootPositionProblem::readings() const {
   Eigen::VectorXd y(static_cast<Index>(rows()));
   for (const Person& person : people_)
     for (std::size_t i = person.first; i < person.first + person.count; ++i) {
@@ -73,10 +73,10 @@ Eigen::VectorXd FootProblem::readings() const {
   return y;
 }
 
-double FootProblem::whiten(const Person& person,
-                           const Noise& noise,
-                           Eigen::MatrixXd& sides,
-                           std::vector<double>* variances) const {
+double FootPositionProblem::whiten(const Person& person,
+                                   const Noise& noise,
+                                   Eigen::MatrixXd& sides,
+                                   std::vector<double>* variances) const {
   constexpr double kAnywhere = 1e6;  // [m^2]
   const PersonMotion motion{person.stands ? 0.0 : kWalking, noise.memory_s, noise.shift};
   Eigen::Matrix4d P = Eigen::Vector4d(kAnywhere, kAnywhere, motion.speed * motion.speed,
@@ -113,7 +113,7 @@ double FootProblem::whiten(const Person& person,
   return log_determinant;
 }
 
-Innovations FootProblem::whitened(Eigen::MatrixXd sides) const {
+Innovations FootPositionProblem::whitened(Eigen::MatrixXd sides) const {
   Innovations result;
   result.sides = static_cast<std::size_t>(sides.cols());
   std::vector<double> variances(rows(), 1.0);
@@ -127,14 +127,14 @@ Innovations FootProblem::whitened(Eigen::MatrixXd sides) const {
   return result;
 }
 
-CauseModel FootProblem::nominal() const {
+CauseModel FootPositionProblem::nominal() const {
   CauseModel model;
   model.state = std::make_shared<CauseState>();
   fit(model, 1);
   return model;
 }
 
-std::vector<Candidate> FootProblem::candidates(const CauseModel& model) const {
+std::vector<Candidate> FootPositionProblem::candidates(const CauseModel& model) const {
   std::vector<Candidate> all;
   if (library_.named) all.push_back(detector_effect(kName));
   if (library_.grammar) {
@@ -158,7 +158,7 @@ std::vector<Candidate> FootProblem::candidates(const CauseModel& model) const {
   return all;
 }
 
-Eigen::MatrixXd FootProblem::columns(const Candidate& candidate) const {
+Eigen::MatrixXd FootPositionProblem::columns(const Candidate& candidate) const {
   const auto n = static_cast<Index>(rows());
   if (candidate.hook == "detector.time") {
     Eigen::MatrixXd X(n, 1);
@@ -183,21 +183,24 @@ Eigen::MatrixXd FootProblem::columns(const Candidate& candidate) const {
   return X;
 }
 
-Projection FootProblem::project(const CauseModel& model, std::vector<Candidate> candidates) const {
+Projection FootPositionProblem::project(const CauseModel& model,
+                                        std::vector<Candidate> candidates) const {
   return linear_projection(
       model, std::move(candidates), readings(), [&](const Candidate& c) { return columns(c); },
       [&](const Eigen::MatrixXd& sides) { return whitened(sides); });
 }
 
-void FootProblem::fit(CauseModel& model, int iterations) const {
+void FootPositionProblem::fit(CauseModel& model, int iterations) const {
   fit_beside(model, iterations, {});
 }
 
-void FootProblem::fit_beside(CauseModel& model, int /*iterations*/, const SizePrior& others) const {
+void FootPositionProblem::fit_beside(CauseModel& model,
+                                     int /*iterations*/,
+                                     const SizePrior& others) const {
   linear_fit(project(model, {}), model, others);
 }
 
-std::string FootProblem::note(const Accepted& /*cause*/) const {
+std::string FootPositionProblem::note(const Accepted& /*cause*/) const {
   const auto standing =
       std::count_if(people_.begin(), people_.end(), [](const Person& p) { return p.stands; });
   char text[160];
@@ -206,9 +209,9 @@ std::string FootProblem::note(const Accepted& /*cause*/) const {
   return text;
 }
 
-RowCovariate FootProblem::covariate(const CauseModel& /*model*/,
-                                    const Candidate& cause,
-                                    const Innovations& innovations) const {
+RowCovariate FootPositionProblem::covariate(const CauseModel& /*model*/,
+                                            const Candidate& cause,
+                                            const Innovations& innovations) const {
   const bool named = cause.kind == CandidateKind::kNamed || cause.covariate == "constant";
   // A constant bias along the line of sight is visible as the line turns: it points ahead first and
   // back later. Therefore it is plotted over bearing.

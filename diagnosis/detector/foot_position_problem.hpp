@@ -18,11 +18,11 @@ namespace roadbook {
 /// velocity projects it out; all columns pass through the same filter. Standing pedestrians
 /// contribute most, because a walker's velocity can hide a bias that changes as the car approaches.
 /// Each pedestrian stands or walks, whichever is more likely.
-class FootProblem final : public CauseProblem {
+class FootPositionProblem final : public CauseProblem {
  public:
-  FootProblem(const SightingReadings& readings,
-              const std::vector<PersonTrack>& tracks,
-              LibraryOptions library = {});
+  FootPositionProblem(const SightingReadings& readings,
+                      const std::vector<PersonTrack>& tracks,
+                      LibraryOptions library = {});
 
   /// True if enough pedestrians were tracked long enough; else `message` says what is missing.
   [[nodiscard]] bool usable() const { return message_.empty(); }

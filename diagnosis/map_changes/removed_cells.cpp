@@ -22,7 +22,7 @@ Eigen::Vector2d shift_of(std::size_t offset) {
   return {offset % 2 == 0 ? 0.0 : 0.5, offset < 2 ? 0.0 : 0.5};
 }
 
-Cells landmark_cells(const std::vector<LandmarkChance>& chances,
+Cells landmark_cells(const std::vector<LandmarkRedetection>& chances,
                      double side_m,
                      std::size_t offset) {
   const Eigen::Vector2d shift = shift_of(offset);
@@ -32,7 +32,7 @@ Cells landmark_cells(const std::vector<LandmarkChance>& chances,
   return cells;
 }
 
-void add_squares(const std::vector<LandmarkChance>& chances,
+void add_squares(const std::vector<LandmarkRedetection>& chances,
                  const std::vector<std::uint8_t>& stands,
                  const RemovedCellOptions& options,
                  PresentCells& all) {
@@ -54,7 +54,7 @@ void add_squares(const std::vector<LandmarkChance>& chances,
   all.can_tell.push_back(groups.empty() ? 0 : 1);
 }
 
-RemovedCell surest(const PresentCells& standing, const std::vector<LandmarkChance>& chances) {
+RemovedCell surest(const PresentCells& standing, const std::vector<LandmarkRedetection>& chances) {
   RemovedCell best;
   for (const RemovedCell& square : standing.squares)
     if (const double p = chance_of(square.landmarks, standing.scatter[square.size], chances);
@@ -93,7 +93,7 @@ double PresentCells::widest_scatter() const {
 
 PresentCells present_cells(const std::vector<std::uint8_t>& stands,
                            const RemovedCellOptions& options,
-                           std::vector<LandmarkChance>& chances) {
+                           std::vector<LandmarkRedetection>& chances) {
   fit_redetection_probabilities(stands, chances);
   PresentCells all;
   for (std::size_t size = 0; size < options.sides_m.size(); ++size)
@@ -101,7 +101,7 @@ PresentCells present_cells(const std::vector<std::uint8_t>& stands,
   return all;
 }
 
-RemovedCells removed_cells(std::vector<LandmarkChance>& chances,
+RemovedCells removed_cells(std::vector<LandmarkRedetection>& chances,
                            const RemovedCellOptions& options) {
   std::vector<std::uint8_t> stands(chances.size(), 1);
   PresentCells now = present_cells(stands, options, chances);
@@ -125,7 +125,7 @@ RemovedCells removed_cells(std::vector<LandmarkChance>& chances,
 }
 
 GroupCount count_of(const std::vector<std::size_t>& landmarks,
-                    const std::vector<LandmarkChance>& chances) {
+                    const std::vector<LandmarkRedetection>& chances) {
   GroupCount group;
   group.chances.reserve(landmarks.size());
   for (const std::size_t i : landmarks) {
@@ -137,7 +137,7 @@ GroupCount count_of(const std::vector<std::size_t>& landmarks,
 
 double chance_of(const std::vector<std::size_t>& landmarks,
                  double scatter,
-                 const std::vector<LandmarkChance>& chances) {
+                 const std::vector<LandmarkRedetection>& chances) {
   const GroupCount g = count_of(landmarks, chances);
   return g.count > kMostLeft * g.expected() ? 1.0 : group_tail(g, scatter);
 }

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "diagnosis/map_changes/landmark_chances.hpp"
+#include "diagnosis/map_changes/landmark_redetections.hpp"
 #include "diagnosis/numerics/group_counts.hpp"
 
 namespace roadbook {
@@ -41,7 +41,7 @@ struct PresentCells {
 /// nonzero `stands`, and forms the cells of these landmarks.
 [[nodiscard]] PresentCells present_cells(const std::vector<std::uint8_t>& stands,
                                          const RemovedCellOptions& options,
-                                         std::vector<LandmarkChance>& chances);
+                                         std::vector<LandmarkRedetection>& chances);
 
 struct RemovedCells {
   std::vector<RemovedCell> squares;  ///< removed cells, p below `try_at`, without common landmarks
@@ -52,15 +52,15 @@ struct RemovedCells {
 /// Removes the cell with the smallest p-value, refits probabilities and variation to the rest, and
 /// repeats. The p-value of each removed cell is that given the rest: removed cells must not inform
 /// the model of present ones, and similar removed cells would mask each other. Deterministic.
-[[nodiscard]] RemovedCells removed_cells(std::vector<LandmarkChance>& chances,
+[[nodiscard]] RemovedCells removed_cells(std::vector<LandmarkRedetection>& chances,
                                          const RemovedCellOptions& options = {});
 
 /// Redetections of a set of landmarks with their probabilities.
 [[nodiscard]] GroupCount count_of(const std::vector<std::size_t>& landmarks,
-                                  const std::vector<LandmarkChance>& chances);
+                                  const std::vector<LandmarkRedetection>& chances);
 /// p-value of so few redetections; 1 if the set is not nearly empty.
 [[nodiscard]] double chance_of(const std::vector<std::size_t>& landmarks,
                                double scatter,
-                               const std::vector<LandmarkChance>& chances);
+                               const std::vector<LandmarkRedetection>& chances);
 
 }  // namespace roadbook

@@ -12,7 +12,7 @@ constexpr const char* kLandmarksGone = "map.landmarks_gone";
 constexpr std::size_t kFewestLandmarks = 50;
 
 Eigen::Vector3d middle_of_lost(const RemovedRegion& thing,
-                               const std::vector<LandmarkChance>& chances) {
+                               const std::vector<LandmarkRedetection>& chances) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (const std::size_t i : thing.landmarks) {
@@ -23,7 +23,7 @@ Eigen::Vector3d middle_of_lost(const RemovedRegion& thing,
   return sum / count;
 }
 
-FoundPlace gone_place(const RemovedRegion& thing, const std::vector<LandmarkChance>& chances) {
+FoundPlace gone_place(const RemovedRegion& thing, const std::vector<LandmarkRedetection>& chances) {
   FoundPlace place;
   const GroupCount group = count_of(thing.landmarks, chances);
   place.middle = middle_of_lost(thing, chances);
@@ -42,7 +42,7 @@ FoundPlace gone_place(const RemovedRegion& thing, const std::vector<LandmarkChan
 
 // Adds a region; the standard error of its share is binomial.
 void add_place(const RemovedRegion& thing,
-               const std::vector<LandmarkChance>& chances,
+               const std::vector<LandmarkRedetection>& chances,
                RemovedLandmarks& all) {
   const FoundPlace place = gone_place(thing, chances);
   const auto items = static_cast<double>(place.landmarks);
@@ -84,7 +84,7 @@ FoundCause gone_cause(const RemovedLandmarks& g, double known) {
 
 }  // namespace
 
-RemovedLandmarks removed_landmarks(std::vector<LandmarkChance> chances,
+RemovedLandmarks removed_landmarks(std::vector<LandmarkRedetection> chances,
                                    const RemovedRegionOptions& options) {
   RemovedLandmarks g;
   g.landmarks = chances.size();
@@ -110,7 +110,7 @@ Diagnosis diagnose_gone(const Map& map,
   Diagnosis d;
   if (map.sessions.size() < 2 || holds(without, kLandmarksGone)) return d;
   d.looked_for.emplace_back(kLandmarksGone);
-  const RemovedLandmarks g = removed_landmarks(landmark_chances(map, session, twins));
+  const RemovedLandmarks g = removed_landmarks(landmark_redetections(map, session, twins));
   d.samples = g.landmarks;
   if (g.landmarks < kFewestLandmarks || g.tests == 0) {
     d.not_observable.emplace_back(kLandmarksGone);

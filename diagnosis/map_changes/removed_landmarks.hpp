@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "diagnosis/inference/findings.hpp"
-#include "diagnosis/map_changes/landmark_chances.hpp"
+#include "diagnosis/map_changes/landmark_redetections.hpp"
 #include "diagnosis/map_changes/removed_regions.hpp"
 
 namespace roadbook {
@@ -25,12 +25,13 @@ struct RemovedLandmarks {
 /// Regions where objects were removed or are hidden. Adjacent cells named by `removed_regions` form
 /// one region, whose share counts all its landmarks. Its `p` is that of its most significant cell.
 /// Deterministic.
-[[nodiscard]] RemovedLandmarks removed_landmarks(std::vector<LandmarkChance> chances,
+[[nodiscard]] RemovedLandmarks removed_landmarks(std::vector<LandmarkRedetection> chances,
                                                  const RemovedRegionOptions& options = {});
 
 /// The effect "map.landmarks_gone": landmarks of other sessions that this one should detect and
-/// does not. `twins`: as for `landmark_chances`; landmarks that moved by less than the match radius
-/// count as found. `known`: effects in the model. `without`: effects that are not searched for.
+/// does not. `twins`: as for `landmark_redetections`; landmarks that moved by less than the match
+/// radius count as found. `known`: effects in the model. `without`: effects that are not searched
+/// for.
 [[nodiscard]] Diagnosis diagnose_gone(const Map& map,
                                       int session,
                                       const std::vector<LandmarkTwin>& twins,

@@ -10,7 +10,7 @@ using Landmarks = std::vector<std::size_t>;
 bool touch(const Landmarks& a,
            const Landmarks& b,
            double apart_m,
-           const std::vector<LandmarkChance>& chances) {
+           const std::vector<LandmarkRedetection>& chances) {
   for (const std::size_t i : a)
     for (const std::size_t j : b)
       if (!chances[i].found && !chances[j].found &&
@@ -27,7 +27,7 @@ struct JudgedSquares {
 };
 
 JudgedSquares judge_squares(const RemovedCellOptions& options,
-                            std::vector<LandmarkChance>& chances,
+                            std::vector<LandmarkRedetection>& chances,
                             RemovedCells& fallen) {
   std::vector<std::uint8_t> stands(chances.size(), 1);
   for (const RemovedCell& square : fallen.squares)
@@ -70,7 +70,7 @@ void add_landmarks(const Landmarks& more, Landmarks& all) {
 }
 
 void join(double apart_m,
-          const std::vector<LandmarkChance>& chances,
+          const std::vector<LandmarkRedetection>& chances,
           std::vector<RemovedRegion>& things) {
   for (std::size_t a = 0; a < things.size(); ++a)
     for (std::size_t b = a + 1; b < things.size();) {
@@ -87,7 +87,7 @@ void join(double apart_m,
 // Cells that are not named but touch a region, most significant first.
 void extend(const RemovedCells& fallen,
             const RemovedRegionOptions& options,
-            const std::vector<LandmarkChance>& chances,
+            const std::vector<LandmarkRedetection>& chances,
             std::vector<RemovedRegion>& things) {
   const double enough =
       options.beside / static_cast<double>(std::max<std::size_t>(1, fallen.neighbours));
@@ -104,7 +104,7 @@ void extend(const RemovedCells& fallen,
 
 }  // namespace
 
-RemovedRegions removed_regions(std::vector<LandmarkChance>& chances,
+RemovedRegions removed_regions(std::vector<LandmarkRedetection>& chances,
                                const RemovedRegionOptions& options) {
   RemovedCells fallen = removed_cells(chances, options.squares);
   RemovedRegions result;

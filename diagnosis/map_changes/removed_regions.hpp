@@ -31,7 +31,7 @@ struct RemovedRegions {
 /// is below `beside` over the largest number of touching cells. Probabilities and variation are
 /// those without all provisionally removed cells, named or not; otherwise removed cells would widen
 /// the variation of present ones and mask the rest. Deterministic.
-[[nodiscard]] RemovedRegions removed_regions(std::vector<LandmarkChance>& chances,
+[[nodiscard]] RemovedRegions removed_regions(std::vector<LandmarkRedetection>& chances,
                                              const RemovedRegionOptions& options = {});
 
 }  // namespace roadbook

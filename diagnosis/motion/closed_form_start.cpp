@@ -68,7 +68,7 @@ class GrossStart {
     for (std::size_t j = 0; j + 1 < motion_.knots(); ++j)
       turned_ += std::abs(motion_.yaw_rate[j]) * motion_.step_s();
     // Of what reads another time than is thought, factors tell nothing.
-    const StreamLags lags = gross_lags(obs, motion_, known);
+    const StreamLags lags = large_lags(obs, motion_, known);
     sizes_ = named_lags(lags, library.without);
     EffectSizes aligned = known;
     for (const auto& [name, size] : named_lags(lags, {"cam.latency"})) aligned[name] += size;
@@ -169,9 +169,9 @@ class GrossStart {
 
 }  // namespace
 
-EffectSizes gross_start(const Observations& obs,
-                        const EffectSizes& known,
-                        const LibraryOptions& library) {
+EffectSizes start_of_large_effects(const Observations& obs,
+                                   const EffectSizes& known,
+                                   const LibraryOptions& library) {
   EffectSizes sizes = GrossStart(obs, known, library).sizes();
   for (const std::string& name : library.without) sizes.erase(name);
   return sizes;

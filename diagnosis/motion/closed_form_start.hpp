@@ -7,7 +7,7 @@
 namespace roadbook {
 
 /// Sizes of large effects in closed form: latencies of streams that read the poses' motion at quite
-/// another time (`gross_lags`), and factors below two thirds, above one and a half, or negative
+/// another time (`large_lags`), and factors below two thirds, above one and a half, or negative
 /// (radii, track width, steering ratio, gyro scale). The sizes are in addition to `known`. Empty if
 /// no effect is that large; effects that `library` leaves out are not returned.
 /// Method: correlation and regression of the readings on the motion of the poses. Linear steps from
@@ -15,8 +15,8 @@ namespace roadbook {
 /// present one. Readings depend on one over the radius, where Newton's method diverges. The noise
 /// of such a stream would be estimated so large that the stream loses all weight. A stream of which
 /// a factor explains less than nine tenths is left alone. Cost: linear in the drive.
-[[nodiscard]] EffectSizes gross_start(const Observations& obs,
-                                      const EffectSizes& known,
-                                      const LibraryOptions& library);
+[[nodiscard]] EffectSizes start_of_large_effects(const Observations& obs,
+                                                 const EffectSizes& known,
+                                                 const LibraryOptions& library);
 
 }  // namespace roadbook

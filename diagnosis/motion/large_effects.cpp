@@ -64,11 +64,11 @@ MotionModel tempered_model(const Observations& obs, const EffectSizes& known) {
 
 }  // namespace
 
-bool is_gross(const Observations& obs,
-              const MotionModel& nominal,
-              const EffectSizes& known,
-              const LibraryOptions& library) {
-  if (!gross_start(obs, known, library).empty()) return true;
+bool has_large_effects(const Observations& obs,
+                       const MotionModel& nominal,
+                       const EffectSizes& known,
+                       const LibraryOptions& library) {
+  if (!start_of_large_effects(obs, known, library).empty()) return true;
   const Innovations in =
       run_pass(obs, nominal.point, nominal.noise, Columns{}, {false, 0, &nominal.inflation})
           .innovations;
@@ -83,28 +83,28 @@ bool is_gross(const Observations& obs,
   return false;
 }
 
-EffectSizes gross_causes(const Observations& obs,
-                         const EffectSizes& known,
-                         const LibraryOptions& library) {
+EffectSizes large_effects_of(const Observations& obs,
+                             const EffectSizes& known,
+                             const LibraryOptions& library) {
   LibraryOptions names = library;
   names.places = names.grammar = names.bounds = false;
   SearchOptions options;
   options.doubt_correlated = false;
-  EffectSizes gross = gross_start(obs, known, library);
+  EffectSizes large = start_of_large_effects(obs, known, library);
   for (int round = 0; round < kGrossRounds; ++round) {
     EffectSizes all = known;
-    for (const auto& [name, size] : gross) all[name] += size;
+    for (const auto& [name, size] : large) all[name] += size;
     const Observations covered = covered_by_poses(obs, all);
     const MotionProblem problem(covered, tempered_model(covered, all), names);
     const SearchResult found = search_causes(problem, options);
     bool moved = false;
     for (const AcceptedEffect& v : found.verdicts) {
-      gross[v.cause.candidate.name] += v.cause.size[0];
+      large[v.cause.candidate.name] += v.cause.size[0];
       moved = moved || std::abs(v.cause.size[0]) > 0.2 * v.cause.candidate.tau;
     }
     if (!moved) break;
   }
-  return gross;
+  return large;
 }
 
 }  // namespace roadbook

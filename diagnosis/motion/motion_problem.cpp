@@ -67,13 +67,13 @@ MotionProblem::MotionProblem(Observations obs, const EffectSizes& known, Library
       nominal_(nominal_model(obs_, known)),
       start_(nominal_),
       level_of_names_(level_for(obs_, nominal_)) {
-  if (!is_gross(obs_, nominal_, known, library_)) return;
-  const EffectSizes gross = gross_causes(obs_, known, library_);
-  if (gross.empty()) return;
+  if (!has_large_effects(obs_, nominal_, known, library_)) return;
+  const EffectSizes large = large_effects_of(obs_, known, library_);
+  if (large.empty()) return;
   // Noise and trajectory are those of the model that is near the data; about a fit of the nominal
   // one nothing is linear.
   EffectSizes near = known;
-  for (const auto& [name, size] : gross) near[name] += size;
+  for (const auto& [name, size] : large) near[name] += size;
   obs_ = covered_by_poses(std::move(obs_), near);
   const MotionModel informed = nominal_model(obs_, near);
   const MotionEffects nominal_effects = nominal_.known;
@@ -89,8 +89,8 @@ MotionProblem::MotionProblem(Observations obs, const EffectSizes& known, Library
   LibraryOptions names = library_;
   names.places = names.grammar = false;
   for (Candidate c : list_candidates(obs_, start_.point, names)) {
-    const auto size = gross.find(c.name);
-    if (size == gross.end()) continue;
+    const auto size = large.find(c.name);
+    if (size == large.end()) continue;
     bound(nominal_effects, c);
     c.columns = {start_.accepted.size()};
     start_.accepted.push_back({c, Eigen::VectorXd::Constant(1, size->second)});

@@ -22,7 +22,7 @@ class MotionProblem final : public CauseProblem {
   [[nodiscard]] std::vector<ChannelName> channels() const override;
   [[nodiscard]] std::size_t rows() const override { return obs_.offsets().back(); }
   [[nodiscard]] CauseModel nominal() const override;
-  /// With gross causes where the nominal model is nowhere near the data.
+  /// With large effects if the nominal model is nowhere near the data.
   [[nodiscard]] CauseModel start() const override;
   /// Not where poses share their errors, or readings of the gyro do.
   [[nodiscard]] double level_of_names() const override { return level_of_names_; }

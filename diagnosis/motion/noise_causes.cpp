@@ -7,7 +7,7 @@
 #include "base/median.hpp"
 #include "diagnosis/motion/wheel_noise.hpp"
 #include "diagnosis/streams/coarse_readings.hpp"
-#include "diagnosis/streams/noise_looks.hpp"
+#include "diagnosis/streams/variance_samples.hpp"
 #include "diagnosis/streams/window_noise.hpp"
 
 namespace roadbook {
@@ -42,7 +42,7 @@ NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels, 
 
 // If a whole pose is an outlier, its three rows are. If one axis of a map is, two rows show it, and
 // shares come out slightly too large (docs/results/diagnosis.md).
-NoiseCause pose_outliers(const std::vector<ScatterLook>& looks, double known) {
+NoiseCause pose_outliers(const std::vector<VarianceSample>& looks, double known) {
   constexpr double kOfAxes = 0.05;
   const NoiseCause c = outliers("poses", looks, {LookShape{}}, known);
   const double sigma = std::hypot(std::sqrt(3.0) * c.sigma, kOfAxes * (known + c.size));
@@ -57,7 +57,7 @@ void look_into_poses(const Observations& obs,
   Columns none;
   const Innovations in =
       run_pass(obs, model.point, model.noise, none, {false, 0, &model.inflation}).innovations;
-  std::array<std::vector<ScatterLook>, 3> by_channel;
+  std::array<std::vector<VarianceSample>, 3> by_channel;
   std::array<std::vector<double>, 3> channels;
   for (std::size_t i = 0; i < in.of.size(); ++i) {
     const Innovation& row = in.of[i];
@@ -69,13 +69,13 @@ void look_into_poses(const Observations& obs,
     channels[c].push_back(in.row(i)[0]);
   }
   // Each channel by its own scale: where correlated errors were allowed for, scales differ.
-  std::vector<ScatterLook> looks;
+  std::vector<VarianceSample> looks;
   for (const auto& of : by_channel) {
     std::vector<double> squares;
-    for (const ScatterLook& l : of) squares.push_back(l.square);
+    for (const VarianceSample& l : of) squares.push_back(l.square);
     if (squares.size() < 20) continue;
     const double scale = std::max(median(squares) / median_share(1.0), 1e-300);
-    for (ScatterLook l : of) {
+    for (VarianceSample l : of) {
       l.square /= scale;
       looks.push_back(l);
     }
@@ -84,7 +84,7 @@ void look_into_poses(const Observations& obs,
   const VarianceSlopes slopes = variance_slopes("poses", looks, known);
   all.push_back(slopes.by_speed);
   all.push_back(slopes.by_turn);
-  for (ScatterLook& l : looks) l = slopes.without(l);
+  for (VarianceSample& l : looks) l = slopes.without(l);
   all.push_back(pose_outliers(looks, known.outliers));
   all.push_back(pose_correlation(channels, known.correlation));
 }

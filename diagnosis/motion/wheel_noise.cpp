@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "diagnosis/motion/wheel_scores.hpp"
-#include "diagnosis/streams/noise_looks.hpp"
+#include "diagnosis/streams/variance_samples.hpp"
 
 namespace roadbook {
 namespace {
@@ -111,11 +111,11 @@ std::size_t kind_of(const WheelWindow& w, const WheelParameters& p) {
   return static_cast<std::size_t>(std::clamp(halvings, 0.0, static_cast<double>(kKinds - 1)));
 }
 
-std::vector<ScatterLook> looks_of(const std::vector<WheelWindow>& windows,
-                                  const WheelParameters& p) {
-  std::vector<ScatterLook> looks;
+std::vector<VarianceSample> looks_of(const std::vector<WheelWindow>& windows,
+                                     const WheelParameters& p) {
+  std::vector<VarianceSample> looks;
   for (const WheelWindow& w : windows) {
-    ScatterLook look{0.0, static_cast<double>(kWheelRows), w.speed, w.turn, kind_of(w, p)};
+    VarianceSample look{0.0, static_cast<double>(kWheelRows), w.speed, w.turn, kind_of(w, p)};
     for (std::size_t i = 0; i < kWheelRows; ++i)
       look.square += w.square(i) / row_variance(w, i, p).total() / look.freedom;
     looks.push_back(look);

@@ -76,8 +76,9 @@ class LagSearch {
     const double lag = (static_cast<double>(*least) - most + shift) * step;
     if (!explains(lag)) return std::nullopt;
     const double halved = static_cast<double>(stream_.size()) * std::log(2.0);
-    const bool is_gross = std::abs(lag) >= kLagInReach && *cost[*least] < *without - halved;
-    return is_gross ? lag : 0.0;
+    const bool has_large_effects =
+        std::abs(lag) >= kLagInReach && *cost[*least] < *without - halved;
+    return has_large_effects ? lag : 0.0;
   }
 
   // The best lag of a coarse grid beyond the search range, if the motion explains the readings
@@ -196,7 +197,7 @@ StreamLags lags_of(const Observations& obs,
 
 }  // namespace
 
-StreamLags gross_lags(const Observations& obs, const Trajectory& motion, const EffectSizes& known) {
+StreamLags large_lags(const Observations& obs, const Trajectory& motion, const EffectSizes& known) {
   return lags_of(obs, motion, known, &LagSearch::best);
 }
 

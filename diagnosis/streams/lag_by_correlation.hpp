@@ -27,7 +27,7 @@ struct StreamLags {
 ///
 /// `motion`: trajectory of the poses in true time. `known`: effects that are removed first. Linear
 /// in the length of the drive.
-[[nodiscard]] StreamLags gross_lags(const Observations& obs,
+[[nodiscard]] StreamLags large_lags(const Observations& obs,
                                     const Trajectory& motion,
                                     const EffectSizes& known);
 

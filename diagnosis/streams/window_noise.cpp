@@ -52,9 +52,9 @@ std::size_t usual_count(const std::vector<const WindowObservation*>& windows) {
 
 constexpr std::size_t kFewestWindows = 50;
 
-std::vector<ScatterLook> looks_at(const std::vector<const WindowObservation*>& windows,
-                                  const Trajectory& smooth) {
-  std::vector<ScatterLook> looks;
+std::vector<VarianceSample> looks_at(const std::vector<const WindowObservation*>& windows,
+                                     const Trajectory& smooth) {
+  std::vector<VarianceSample> looks;
   for (const auto* w : windows) {
     const MotionState s = state_of(smooth, *w);
     const double freedom = static_cast<double>(w->count) - 2.0;
@@ -69,7 +69,7 @@ VarianceSlopes window_slopes(const std::string& stream,
                              const std::vector<WindowObservation>& windows,
                              const Trajectory& smooth,
                              const NoiseImperfections& known) {
-  const std::vector<ScatterLook> looks = looks_at(smooth_windows(windows, smooth), smooth);
+  const std::vector<VarianceSample> looks = looks_at(smooth_windows(windows, smooth), smooth);
   if (looks.size() >= kFewestWindows) return variance_slopes(stream, looks, known);
   VarianceSlopes slopes;
   slopes.speed = known.variance_by_speed;
@@ -126,15 +126,15 @@ NoiseCause beside_small_outliers(const NoiseCause& c, double known, double share
 // The selected windows, scaled to equal variance; otherwise the noisiest would dominate.
 struct EvenWindows {
   std::vector<WindowObservation> windows;
-  std::vector<ScatterLook> looks;
+  std::vector<VarianceSample> looks;
 };
 
 EvenWindows evened(const std::vector<const WindowObservation*>& kept,
-                   std::vector<ScatterLook> looks,
+                   std::vector<VarianceSample> looks,
                    const VarianceSlopes& slopes) {
   EvenWindows even{{}, std::move(looks)};
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    ScatterLook& look = even.looks[i];
+    VarianceSample& look = even.looks[i];
     const double square = slopes.without(look).square;
     const double scale = square / std::max(look.square, 1e-300);
     even.windows.push_back(*kept[i]);
@@ -168,8 +168,8 @@ OutliersAndCorrelation told_apart(const std::string& stream,
     const NoiseCause& c = told.correlation;
     const double r = known.correlation + (c.z > kSureNoise ? c.size : 0.0);
     const auto [part, leverages] = freedom_of_correlated(r, usual);
-    std::vector<ScatterLook> fewer = even.looks;
-    for (ScatterLook& l : fewer) l.freedom *= part;
+    std::vector<VarianceSample> fewer = even.looks;
+    for (VarianceSample& l : fewer) l.freedom *= part;
     const LookShape shape{part * (static_cast<double>(usual) - 2.0), readings, leverages};
     told.share = outliers(stream, fewer, {shape}, known.outliers);
     if (!is_sure(told.share) && known.outliers <= 0.0) break;
@@ -196,7 +196,7 @@ void append_window_noise(const std::string& stream,
                          std::vector<NoiseCause>& all) {
   const auto kept = smooth_windows(windows, smooth);
   if (kept.size() < kFewestWindows) return;
-  const std::vector<ScatterLook> looks = looks_at(kept, smooth);
+  const std::vector<VarianceSample> looks = looks_at(kept, smooth);
   const VarianceSlopes slopes = variance_slopes(stream, looks, known);
   const EvenWindows even = evened(kept, looks, slopes);
   const OutliersAndCorrelation told = told_apart(stream, even, known);

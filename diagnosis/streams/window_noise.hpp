@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/streams/noise_looks.hpp"
 #include "diagnosis/streams/observations.hpp"
 #include "diagnosis/streams/trajectory.hpp"
+#include "diagnosis/streams/variance_samples.hpp"
 
 namespace roadbook {
 

@@ -97,7 +97,7 @@ TEST(GrossLatencies, BesideAnotherCauseAndAGrossFactor) {
 
   streams = recorded_with(5, {{"imu0.gyro_scale", 1.0}});
   delay(streams.gyro, -1.7);
-  const EffectSizes start = gross_start(observe(streams), {}, {});
+  const EffectSizes start = start_of_large_effects(observe(streams), {}, {});
   ASSERT_EQ(start.size(), 2U);
   EXPECT_NEAR(start.at("imu0.latency"), -1.7, 0.02);
   EXPECT_NEAR(start.at("imu0.gyro_scale"), 1.0, 0.05);
@@ -106,12 +106,12 @@ TEST(GrossLatencies, BesideAnotherCauseAndAGrossFactor) {
 // Without the effect of the poses' clock, the common delay is reported for each stream.
 TEST(GrossLatencies, OfAllStreamsAlikeAreOfThePosesUnlessThatIsLeftOut) {
   const Observations obs = observe(late("cam.latency", 2.0, 6));
-  const EffectSizes poses = gross_start(obs, {}, {});
+  const EffectSizes poses = start_of_large_effects(obs, {}, {});
   ASSERT_EQ(poses.size(), 1U);
   EXPECT_NEAR(poses.at("cam.latency"), 2.0, 0.02);
   LibraryOptions library;
   library.without = {"cam.latency"};
-  const EffectSizes each = gross_start(obs, {}, library);
+  const EffectSizes each = start_of_large_effects(obs, {}, library);
   ASSERT_EQ(each.size(), 2U);
   EXPECT_NEAR(each.at("wheels0.latency"), -2.0, 0.02);
   EXPECT_NEAR(each.at("imu0.latency"), -2.0, 0.02);
@@ -121,8 +121,8 @@ TEST(GrossLatencies, OfAllStreamsAlikeAreOfThePosesUnlessThatIsLeftOut) {
 TEST(GrossLatencies, AreNoneWhereClocksAgreeToATenthOfASecond) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
-    EXPECT_TRUE(gross_start(observe(recorded_with(seed)), {}, {}).empty());
-    EXPECT_TRUE(gross_start(observe(late("imu0.latency", 0.1, seed)), {}, {}).empty());
+    EXPECT_TRUE(start_of_large_effects(observe(recorded_with(seed)), {}, {}).empty());
+    EXPECT_TRUE(start_of_large_effects(observe(late("imu0.latency", 0.1, seed)), {}, {}).empty());
   }
 }
 

@@ -121,12 +121,12 @@ struct OwnPlace {
 
 // Landmarks over 60 m by 12 m; half of them are detected again. The rate varies from place to place
 // and grows with the expected number of detections.
-std::vector<LandmarkChance> scattered(std::uint64_t seed, const OwnPlace& place) {
+std::vector<LandmarkRedetection> scattered(std::uint64_t seed, const OwnPlace& place) {
   Random random(seed, "scattered");
   const double phase = random.uniform(0.0, 6.3);
-  std::vector<LandmarkChance> all;
+  std::vector<LandmarkRedetection> all;
   for (int i = 0; i < 3000; ++i) {
-    LandmarkChance c;
+    LandmarkRedetection c;
     c.landmark = i;
     c.p_map = {random.uniform(0.0, 60.0), random.uniform(0.0, 12.0), random.uniform(0.0, 3.0)};
     c.expected = random.uniform(1.0, 12.0);
@@ -162,7 +162,7 @@ TEST(RemovedLandmarks, APlaceThatIsEmptyIsNamedWithItsShare) {
   constexpr int kSeeds = 12;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const auto chances = scattered(seed, {2.0, 0.4, 2.4});
-    const auto is_gone = [&](const LandmarkChance& c) {
+    const auto is_gone = [&](const LandmarkRedetection& c) {
       return (c.p_map.head<2>() - middle).norm() < 2.4;
     };
     const RemovedLandmarks g = removed_landmarks(chances);
@@ -189,7 +189,7 @@ TEST(RemovedLandmarks, APlaceThatIsEmptyIsNamedWithItsShare) {
 TEST(RemovedLandmarks, ManyPlacesThatAreEmptyDoNotHideEachOther) {
   constexpr double kRadius = 1.6;
   // Discs are 7.5 m by 6 m apart. Returns the index of the disc that contains the landmark, or -1.
-  const auto disc_of = [](const LandmarkChance& c) {
+  const auto disc_of = [](const LandmarkRedetection& c) {
     const double column = std::round(c.p_map.x() / 7.5);
     const int row = c.p_map.y() < 6.0 ? 0 : 1;
     const Eigen::Vector2d middle(7.5 * column, 3.0 + 6.0 * row);
@@ -198,10 +198,10 @@ TEST(RemovedLandmarks, ManyPlacesThatAreEmptyDoNotHideEachOther) {
   int named = 0;
   int discs = 0;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    std::vector<LandmarkChance> chances = scattered(seed, {2.0, 0.4, 0.0});
+    std::vector<LandmarkRedetection> chances = scattered(seed, {2.0, 0.4, 0.0});
     std::array<int, 18> there{};
     std::array<int, 18> judged{};
-    for (LandmarkChance& c : chances)
+    for (LandmarkRedetection& c : chances)
       if (const int disc = disc_of(c); disc >= 0) {
         c.found = false;
         ++there.at(static_cast<std::size_t>(disc));

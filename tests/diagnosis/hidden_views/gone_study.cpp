@@ -37,7 +37,7 @@ bool is_wrong(const FoundPlace& place, const GoneWorld& world) {
 
 void run(const GoneWorldOptions& options, Outcome& all) {
   const GoneWorld world = make_gone_world(options);
-  const std::vector<LandmarkChance> chances = landmark_chances(world.map, 1, {});
+  const std::vector<LandmarkRedetection> chances = landmark_redetections(world.map, 1, {});
   const RemovedLandmarks found = removed_landmarks(chances);
   all.places += found.places.size();
   for (const FoundPlace& place : found.places) all.wrong += is_wrong(place, world) ? 1 : 0;

@@ -17,7 +17,7 @@ TEST(GoneWorld, NothingIsNamedWhereEverythingStands) {
     GoneWorldOptions options;
     options.seed = seed;
     const GoneWorld world = make_gone_world(options);
-    const RemovedLandmarks g = removed_landmarks(landmark_chances(world.map, 1, {}));
+    const RemovedLandmarks g = removed_landmarks(landmark_redetections(world.map, 1, {}));
     EXPECT_TRUE(g.places.empty()) << "seed " << seed;
     EXPECT_GT(g.tests, 50U) << "seed " << seed;
   }
@@ -34,7 +34,7 @@ TEST(GoneWorld, ThingsThatAreGoneAreNamedHoweverManyThereAre) {
       options.per_square = 80.0;
       options.share_gone = share;
       const GoneWorld world = make_gone_world(options);
-      const std::vector<LandmarkChance> chances = landmark_chances(world.map, 1, {});
+      const std::vector<LandmarkRedetection> chances = landmark_redetections(world.map, 1, {});
       std::vector<int> there(world.gone.size(), 0);
       std::vector<int> judged(world.gone.size(), 0);
       const auto thing = [&](std::size_t i) {

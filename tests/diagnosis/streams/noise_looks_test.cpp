@@ -1,10 +1,9 @@
-#include "diagnosis/streams/noise_looks.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/random.hpp"
+#include "diagnosis/streams/variance_samples.hpp"
 
 namespace roadbook {
 namespace {
@@ -13,9 +12,9 @@ constexpr int kFreedom = 6;
 
 // Samples of a car whose speed and turn rate correlate by 0.8. The log variance grows by the given
 // amounts per standard deviation of either (1 m/s, 0.1 rad/s).
-std::vector<ScatterLook> looks_by(double by_speed, double by_turn, std::uint64_t seed) {
+std::vector<VarianceSample> looks_by(double by_speed, double by_turn, std::uint64_t seed) {
   Random random(seed, "looks");
-  std::vector<ScatterLook> looks;
+  std::vector<VarianceSample> looks;
   for (int k = 0; k < 1500; ++k) {
     const double s = random.normal();
     const double t = 0.8 * s + 0.6 * random.normal();

@@ -1,4 +1,4 @@
-#include "diagnosis/map_changes/landmark_chances.hpp"
+#include "diagnosis/map_changes/landmark_redetections.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -54,9 +54,7 @@ std::vector<Views> views_of(const Map& map, int session, const std::vector<Landm
 }
 
 // For each keyframe of other sessions the most similar keyframe of the drive; -1 if there is none.
-std::vector<int> keyframes_alike(const Map& map,
-                                 int session,
-                                 const LandmarkChanceOptions& options) {
+std::vector<int> keyframes_alike(const Map& map, int session, const RedetectionOptions& options) {
   const auto count = static_cast<int>(map.keyframes.size());
   std::vector<Eigen::Isometry3d> poses;
   CellGrid<std::size_t> grid(options.near_m);
@@ -132,7 +130,7 @@ void add_trials(const Views& views,
                 const Eigen::Vector3d& p,
                 const CameraPoses& poses,
                 const std::vector<int>& alike,
-                const LandmarkChanceOptions& options,
+                const RedetectionOptions& options,
                 std::vector<Trial>& trials) {
   std::vector<ViewIndex> tried;
   for (const ViewIndex& then : views.then) {
@@ -159,7 +157,7 @@ void drop_untrusted(std::size_t keyframes, int trusted, std::vector<Trial>& tria
   std::erase_if(trials, [&](const Trial& t) { return seen[at(t.keyframe)] < trusted; });
 }
 
-void count(const std::vector<Trial>& trials, std::vector<LandmarkChance>& chances) {
+void count(const std::vector<Trial>& trials, std::vector<LandmarkRedetection>& chances) {
   std::array<double, kClasses> tried{};
   std::array<double, kClasses> seen{};
   for (const Trial& t : trials) {
@@ -167,7 +165,7 @@ void count(const std::vector<Trial>& trials, std::vector<LandmarkChance>& chance
     seen[t.of_class] += t.seen ? 1.0 : 0.0;
   }
   for (const Trial& t : trials) {
-    LandmarkChance& c = chances[t.chance];
+    LandmarkRedetection& c = chances[t.chance];
     c.expected += seen[t.of_class] / tried[t.of_class];
     c.sightings += t.seen ? 1 : 0;
     c.range_m = c.range_m == 0.0 ? t.range_m : std::min(c.range_m, t.range_m);
@@ -177,7 +175,7 @@ void count(const std::vector<Trial>& trials, std::vector<LandmarkChance>& chance
 constexpr int kFeatures = 5;
 using ChanceFeatures = Eigen::Matrix<double, kFeatures, 1>;
 
-ChanceFeatures features_of(const LandmarkChance& c) {
+ChanceFeatures features_of(const LandmarkRedetection& c) {
   ChanceFeatures f;
   f << 1.0, std::log(c.expected), std::log(std::max(c.range_m, 0.3)), std::log(c.views),
       c.ground ? 1.0 : 0.0;
@@ -188,20 +186,20 @@ double logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 
 }  // namespace
 
-std::vector<LandmarkChance> landmark_chances(const Map& map,
-                                             int session,
-                                             const std::vector<LandmarkTwin>& twins,
-                                             const LandmarkChanceOptions& options) {
+std::vector<LandmarkRedetection> landmark_redetections(const Map& map,
+                                                       int session,
+                                                       const std::vector<LandmarkTwin>& twins,
+                                                       const RedetectionOptions& options) {
   const std::vector<Views> views = views_of(map, session, twins);
   const std::vector<int> alike = keyframes_alike(map, session, options);
   const CameraPoses poses(map);
-  std::vector<LandmarkChance> chances;
+  std::vector<LandmarkRedetection> chances;
   std::vector<Trial> trials;
   for (std::size_t l = 0; l < views.size(); ++l) {
     if (views[l].then.size() < at(options.fewest_views)) continue;
     const Eigen::Vector3d p = map.p_map(map.landmarks[l]);
     if (parallax(views[l].then, p, poses) < options.least_parallax) continue;
-    LandmarkChance c;
+    LandmarkRedetection c;
     c.landmark = static_cast<int>(l);
     c.p_map = p;
     c.found = !views[l].now.empty();
@@ -213,18 +211,18 @@ std::vector<LandmarkChance> landmark_chances(const Map& map,
   drop_untrusted(map.keyframes.size(), options.trusted, trials);
   count(trials, chances);
   std::erase_if(chances,
-                [&](const LandmarkChance& c) { return c.expected < options.least_expected; });
+                [&](const LandmarkRedetection& c) { return c.expected < options.least_expected; });
   return chances;
 }
 
 void fit_redetection_probabilities(const std::vector<std::uint8_t>& of_use,
-                                   std::vector<LandmarkChance>& chances) {
+                                   std::vector<LandmarkRedetection>& chances) {
   constexpr int kRounds = 15;
   constexpr double kEnough = 1e-10;  // on the squared step
   constexpr double kRidge = 1.0;     // ridge on all but the constant, worth one landmark
   ChanceFeatures w = ChanceFeatures::Zero();
   std::vector<ChanceFeatures> features;
-  for (const LandmarkChance& c : chances) features.push_back(features_of(c));
+  for (const LandmarkRedetection& c : chances) features.push_back(features_of(c));
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix<double, kFeatures, kFeatures> H =
         Eigen::Matrix<double, kFeatures, kFeatures>::Identity() * kRidge;

@@ -1,4 +1,4 @@
-#include "diagnosis/streams/noise_looks.hpp"
+#include "diagnosis/streams/variance_samples.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -62,27 +62,27 @@ NoiseCause slope_beside(
   return noise_cause(effect, unit, slope, sigma, slope / sigma);
 }
 
-double scale_of_looks(const std::vector<ScatterLook>& looks) {
+double scale_of_looks(const std::vector<VarianceSample>& looks) {
   Values scaled;
-  for (const ScatterLook& l : looks) scaled.push_back(l.square / median_share(l.freedom));
+  for (const VarianceSample& l : looks) scaled.push_back(l.square / median_share(l.freedom));
   return scaled.empty() ? 1.0 : std::max(median(scaled), 1e-300);
 }
 
 // For each sample whether its p-value is below `chance`.
-std::vector<bool> beyond(const std::vector<ScatterLook>& looks, double scale, double chance) {
+std::vector<bool> beyond(const std::vector<VarianceSample>& looks, double scale, double chance) {
   std::vector<bool> far;
-  for (const ScatterLook& l : looks)
+  for (const VarianceSample& l : looks)
     far.push_back(chi_squared_tail(l.square / scale * l.freedom,
                                    std::max(1, static_cast<int>(std::ceil(l.freedom - 1e-9)))) <
                   chance);
   return far;
 }
 
-OutlierShare fitted_share(const std::vector<ScatterLook>& looks,
+OutlierShare fitted_share(const std::vector<VarianceSample>& looks,
                           const std::vector<LookShape>& shapes) {
   std::vector<LooksAlike> kinds;
   for (const LookShape& shape : shapes) kinds.push_back({shape, {}});
-  for (const ScatterLook& l : looks) kinds[l.kind].squares.push_back(l.square * l.freedom);
+  for (const VarianceSample& l : looks) kinds[l.kind].squares.push_back(l.square * l.freedom);
   return fit_outlier_share(kinds);
 }
 
@@ -114,19 +114,19 @@ NoiseCause with_sigma(const NoiseCause& cause, double sigma, double known) {
   return other;
 }
 
-ScatterLook VarianceSlopes::without(ScatterLook look) const {
+VarianceSample VarianceSlopes::without(VarianceSample look) const {
   look.square *= std::exp(-speed * look.speed - turn * look.turn);
   return look;
 }
 
 VarianceSlopes variance_slopes(const std::string& stream,
-                               const std::vector<ScatterLook>& looks,
+                               const std::vector<VarianceSample>& looks,
                                const NoiseImperfections& known) {
   VarianceSlopes slopes;
   slopes.speed = known.variance_by_speed;
   slopes.turn = known.variance_by_turn;
   Values speed, turn, y;
-  for (const ScatterLook& l : looks) {
+  for (const VarianceSample& l : looks) {
     speed.push_back(l.speed);
     turn.push_back(l.turn);
     y.push_back(std::log(slopes.without(l).square + 1e-300));
@@ -154,10 +154,10 @@ VarianceSlopes variance_slopes(const std::string& stream,
   return slopes;
 }
 
-std::vector<bool> may_hold_outliers(const std::vector<ScatterLook>& looks) {
+std::vector<bool> may_hold_outliers(const std::vector<VarianceSample>& looks) {
   constexpr double kQuartile = -0.6745;  // lower quartile of the normal distribution
   Values scaled;
-  for (const ScatterLook& l : looks) {
+  for (const VarianceSample& l : looks) {
     const double nine = 2.0 / (9.0 * l.freedom);
     scaled.push_back(l.square /
                      std::pow(std::max(0.1, 1.0 - nine + kQuartile * std::sqrt(nine)), 3));
@@ -168,7 +168,7 @@ std::vector<bool> may_hold_outliers(const std::vector<ScatterLook>& looks) {
 }
 
 NoiseCause outliers(const std::string& stream,
-                    const std::vector<ScatterLook>& looks,
+                    const std::vector<VarianceSample>& looks,
                     const std::vector<LookShape>& shapes,
                     double known) {
   const std::string effect = stream + ".outliers";

@@ -10,7 +10,7 @@ namespace roadbook {
 
 /// A landmark of other sessions, and how often a drive should detect it again. Each earlier view
 /// counts with the detection probability of a similar view of the drive's most similar keyframe.
-struct LandmarkChance {
+struct LandmarkRedetection {
   int landmark = 0;
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
   double expected =
@@ -23,7 +23,7 @@ struct LandmarkChance {
   double chance = 0.0;  ///< probability of `found`, see `fit_redetection_probabilities`
 };
 
-struct LandmarkChanceOptions {
+struct RedetectionOptions {
   double near_m = 1.5;     ///< largest distance of similar keyframes
   double turn_rad = 0.5;   ///< largest difference of their headings
   double side_rad = 0.35;  ///< largest angle between lines of sight
@@ -36,16 +36,16 @@ struct LandmarkChanceOptions {
 
 /// Landmarks of other sessions that `session` should detect again, in the order of the map.
 /// `twins`: landmarks that it matched at another place (`landmark_twins`). Deterministic.
-[[nodiscard]] std::vector<LandmarkChance> landmark_chances(
+[[nodiscard]] std::vector<LandmarkRedetection> landmark_redetections(
     const Map& map,
     int session,
     const std::vector<LandmarkTwin>& twins,
-    const LandmarkChanceOptions& options = {});
+    const RedetectionOptions& options = {});
 
 /// Sets `chance` by a logistic regression of `found` on log expected redetections, log range, log
 /// number of views and whether the landmark is on the ground. Only landmarks with a nonzero
 /// `of_use` (same length) are used for the fit.
 void fit_redetection_probabilities(const std::vector<std::uint8_t>& of_use,
-                                   std::vector<LandmarkChance>& chances);
+                                   std::vector<LandmarkRedetection>& chances);
 
 }  // namespace roadbook

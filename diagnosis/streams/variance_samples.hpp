@@ -13,7 +13,7 @@ namespace roadbook {
 // samples of its variance. Each effect is tested with the others in the model.
 
 /// One independent sample of a stream's variance: a mean square with `freedom` degrees of freedom.
-struct ScatterLook {
+struct VarianceSample {
   double square = 0.0;
   double freedom = 1.0;
   double speed = 0.0;
@@ -43,7 +43,7 @@ struct VarianceSlopes {
          turn = 0.0;  ///< slopes of the log variance in total: known and significant parts
 
   /// The sample, scaled to zero speed and turn rate.
-  [[nodiscard]] ScatterLook without(ScatterLook look) const;
+  [[nodiscard]] VarianceSample without(VarianceSample look) const;
 };
 
 /// Regression of the log of the samples, which a few outliers hardly change. Speed and turn rate
@@ -51,7 +51,7 @@ struct VarianceSlopes {
 /// residual variance is estimated, and the standard error allows for autocorrelated neighbours in
 /// `looks`.
 [[nodiscard]] VarianceSlopes variance_slopes(const std::string& stream,
-                                             const std::vector<ScatterLook>& looks,
+                                             const std::vector<VarianceSample>& looks,
                                              const NoiseImperfections& known);
 
 /// Share of outliers. It is significant if more samples are extremely large than expected (Poisson
@@ -61,7 +61,7 @@ struct VarianceSlopes {
 /// `known`: share that the model contains. If it is above 0, the result is the difference from it.
 /// `shapes`: one for each kind of samples.
 [[nodiscard]] NoiseCause outliers(const std::string& stream,
-                                  const std::vector<ScatterLook>& looks,
+                                  const std::vector<VarianceSample>& looks,
                                   const std::vector<LookShape>& shapes,
                                   double known);
 
@@ -70,6 +70,6 @@ struct VarianceSlopes {
 
 /// For each sample whether it may contain an outlier; 1 % of the others are as large. The scale
 /// comes from the lower quartile of the samples, which outliers hardly change.
-[[nodiscard]] std::vector<bool> may_hold_outliers(const std::vector<ScatterLook>& looks);
+[[nodiscard]] std::vector<bool> may_hold_outliers(const std::vector<VarianceSample>& looks);
 
 }  // namespace roadbook
