@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <iterator>
 
-#include "apps/label_server/learning_record.hpp"
-#include "apps/label_server/people_record.hpp"
 #include "semantics/labels/label_sightings.hpp"
 #include "workflows/labels/label_examples.hpp"
+#include "workflows/labels/learning_record.hpp"
+#include "workflows/labels/people_record.hpp"
 
 namespace roadbook {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/label_server/learning_record.hpp"
-#include "apps/label_server/people_record.hpp"
 #include "mapping/store/map_file.hpp"
 #include "tests/apps/run_command.hpp"
 #include "tests/semantics/label_store_fixture.hpp"
+#include "workflows/labels/learning_record.hpp"
+#include "workflows/labels/people_record.hpp"
 
 namespace roadbook {
 namespace {
