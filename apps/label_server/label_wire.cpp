@@ -8,7 +8,6 @@
 
 #include "apps/label_server/moved_place.hpp"
 #include "apps/label_server/people_wire.hpp"
-#include "base/utf8.hpp"
 #include "mapping/layers/map_layers.hpp"
 #include "semantics/labels/label_check.hpp"
 #include "semantics/labels/label_shift.hpp"
@@ -18,25 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kDeepest = 8;
 constexpr double kSamePlaceM = 1.0;
-
-const Json& required(const Json& body, const char* name) {
-  const auto found = body.find(name);
-  if (found == body.end()) refuse_field(name, "nothing", "a value");
-  return *found;
-}
-
-LabelSource source_of(const std::string& name) {
-  for (const auto source : {LabelSource::kDrawn, LabelSource::kAccepted, LabelSource::kDetected})
-    if (name == to_text(source)) return source;
-  refuse_field("source", name, "drawn, accepted or detected");
-}
-
-// A class of 64 characters may be rejected too.
-std::string kind_field(const Json& body) {
-  return text_field(body, "kind", 64 + rejected_kind("").size());
-}
 
 Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& corners) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -113,7 +94,7 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
                         box);
   }
   if (shape != "polygon") refuse_field("shape", shape, "box or polygon");
-  const Json& list = required(body, "corners");
+  const Json& list = required_field(body, "corners");
   if (!list.is_array() || list.size() < 3 || list.size() > kMostCorners)
     refuse_field("corners", list.is_array() ? std::to_string(list.size()) : "another type",
                  "a list of 3 to " + std::to_string(kMostCorners) + " corners");
@@ -124,64 +105,6 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
 
 }  // namespace
 
-void refuse_field(const std::string& field, const std::string& got, const std::string& want) {
-  throw RequestError(422, field + ": got " + got + ", want " + want);
-}
-
-Json parse_body(const std::string& body) {
-  const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepest) throw RequestError(400, "body: got deep nesting, want at most 8 levels");
-    return true;
-  };
-  if (!utf8_characters(body))
-    throw RequestError(400, "body: got bytes that are not UTF-8, want UTF-8 text");
-  try {
-    Json json = Json::parse(body, shallow);
-    if (!json.is_object()) throw RequestError(400, "body: got another JSON value, want an object");
-    return json;
-  } catch (const Json::exception& fault) {
-    throw RequestError(400,
-                       std::string("body: got invalid JSON, want a JSON object: ") + fault.what());
-  }
-}
-
-double number_field(const Json& body, const char* name) {
-  const Json& value = required(body, name);
-  if (!value.is_number() || !(std::abs(value.get<double>()) < 1e7))
-    refuse_field(name, value.dump(), "a number");
-  return value.get<double>();
-}
-
-std::int64_t integer_field(const Json& body, const char* name) {
-  const Json& value = required(body, name);
-  if (!value.is_number_integer()) refuse_field(name, value.dump(), "a whole number");
-  return value.get<std::int64_t>();
-}
-
-Eigen::Vector2d point_field(const Json& value) {
-  if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
-    refuse_field("corners", value.dump(), "pairs of numbers");
-  return {value[0].get<double>(), value[1].get<double>()};
-}
-
-bool flag_field(const Json& body, const char* name) {
-  const Json& value = required(body, name);
-  if (!value.is_boolean()) refuse_field(name, value.dump(), "true or false");
-  return value.get<bool>();
-}
-
-std::string text_field(const Json& body, const char* name, std::size_t longest) {
-  const Json& value = required(body, name);
-  if (!value.is_string()) refuse_field(name, value.dump(), "text");
-  const auto text = value.get<std::string>();
-  if (utf8_characters(text).value_or(0) > longest)
-    refuse_field(name, "a longer text", "at most " + std::to_string(longest) + " characters");
-  for (const char c : text)
-    if (static_cast<unsigned char>(c) < 32)
-      refuse_field(name, "a control character", "printable text");
-  return text;
-}
-
 Json classes_to_wire(const LabelClassList& list) {
   return {{"classes", Json(classes_to_json(list.classes))},
           {"version", list.version},
@@ -190,7 +113,7 @@ Json classes_to_wire(const LabelClassList& list) {
 }
 
 LabelClassList classes_from_wire(const Json& body) {
-  const Json& list = required(body, "classes");
+  const Json& list = required_field(body, "classes");
   if (!list.is_array()) refuse_field("classes", list.dump().substr(0, 40), "a list of classes");
   std::vector<LabelClass> classes;
   for (const Json& c : list) {
@@ -249,14 +172,6 @@ Json changed_on_wire(const Map& map, const Label& label, const Json& body) {
   if (body.contains("foot") || body.contains("head")) json.erase("azimuth");
   json.update(body);
   return json;
-}
-
-void read_label_fields(const Json& body, Label* label) {
-  label->kind = kind_field(body);
-  if (label->kind.empty()) refuse_field("kind", "nothing", "a class");
-  label->source = source_of(text_field(body, "source"));
-  label->score = body.contains("score") ? number_field(body, "score") : 1.0;
-  label->note = body.contains("note") ? text_field(body, "note", 1000) : std::string();
 }
 
 Label label_from_wire(const Map& map, const Json& told, const Label* previous) {

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 
+#include "apps/label_server/label_fields.hpp"
+#include "apps/label_server/request_fields.hpp"
 #include "semantics/labels/label_classes.hpp"
 #include "semantics/labels/label_store.hpp"
 
@@ -13,46 +14,11 @@ namespace roadbook {
 // stored label is relative to a vehicle pose (semantics/labels/labels.hpp). These functions convert
 // between the two forms.
 
-/// A request that the server cannot fulfil. The answer is {"error": what(), ...details} with this
-/// status.
-class RequestError : public std::runtime_error {
- public:
-  RequestError(int status, const std::string& message)
-      : std::runtime_error(message), status_(status) {}
-  [[nodiscard]] int status() const { return status_; }
-
- private:
-  int status_;
-};
-
-/// Throws RequestError 422: "field: got ..., want ...".
-[[noreturn]] void refuse_field(const std::string& field,
-                               const std::string& got,
-                               const std::string& want);
-
-/// A JSON object of at most 8 levels. Throws RequestError 400.
-[[nodiscard]] nlohmann::json parse_body(const std::string& body);
-
-// Read fields of an object. They throw RequestError 422 with the name of the field if it is missing
-// or has another type.
-[[nodiscard]] double number_field(const nlohmann::json& body, const char* name);
-[[nodiscard]] std::int64_t integer_field(const nlohmann::json& body, const char* name);
-[[nodiscard]] bool flag_field(const nlohmann::json& body, const char* name);
-/// Reads a pair of numbers from `corners`.
-[[nodiscard]] Eigen::Vector2d point_field(const nlohmann::json& value);
-/// Reads at most `longest` characters of printable text.
-[[nodiscard]] std::string text_field(const nlohmann::json& body,
-                                     const char* name,
-                                     std::size_t longest = 64);
-
 /// {classes, version, who, when}.
 [[nodiscard]] nlohmann::json classes_to_wire(const LabelClassList& list);
 /// Reads the fields `classes` (a list of {kind, title, colour, shape}), `version` (the version to
 /// replace) and `who`. Throws RequestError 422.
 [[nodiscard]] LabelClassList classes_from_wire(const nlohmann::json& body);
-
-/// Reads class, source, score and note. Throws RequestError 422.
-void read_label_fields(const nlohmann::json& body, Label* label);
 
 /// The result has `moved_m` if the label has moved farther since a user saw it than its covariance
 /// predicts.

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "apps/label_server/label_wire.hpp"
 #include "apps/label_server/people_wire.hpp"
+#include "apps/label_server/request_fields.hpp"
 
 namespace roadbook {
 namespace {

@@ -3,9 +3,11 @@
 #include <charconv>
 #include <cmath>
 
-#include "apps/label_server/label_wire.hpp"
+#include "apps/label_server/label_fields.hpp"
+#include "apps/label_server/request_fields.hpp"
 #include "base/se3.hpp"
 #include "semantics/labels/label_check.hpp"
+#include "semantics/labels/label_classes.hpp"
 #include "semantics/people/person_labels.hpp"
 
 namespace roadbook {

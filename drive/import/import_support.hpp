@@ -11,8 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "drive/images/image_files.hpp"
-#include "drive/import/import.hpp"
+#include "drive/import/import_options.hpp"
 #include "drive/writer.hpp"
 
 namespace roadbook {
