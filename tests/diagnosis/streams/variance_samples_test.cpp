@@ -1,9 +1,10 @@
+#include "diagnosis/streams/variance_samples.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/random.hpp"
-#include "diagnosis/streams/variance_samples.hpp"
 
 namespace roadbook {
 namespace {
