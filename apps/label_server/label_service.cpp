@@ -252,7 +252,7 @@ Json LabelService::set_classes(const Json& body) {
 
 Json LabelService::conflict(const Label& current, const Json& sent) const {
   const std::string since =
-      ": got a change of an older version" +
+      ": got a change of another version" +
       (current.who.empty() ? "" : " (" + current.who + " has changed it since)") +
       ", want a change of the newest version";
   if (current.id == 0)

@@ -69,7 +69,7 @@ void PeopleLearning::start() {
     throw RequestError(422, "people: got no labelled person, draw at least one person first");
   if (all.positives() == all.size())
     throw RequestError(
-        422, "people: got no finished image, label every person in one image and press Done");
+        422, "people: got no finished image, label every person in one image and press Enter");
   worker_.start(kPersonKind);
 }
 

@@ -25,23 +25,22 @@ struct LabelCommand {
   bool replay = false;
 };
 
-ExitStatus play(const LabelCommand& command, Console& console, const CommonOptions& common) {
-  console.result(run_oracle(
+nlohmann::ordered_json play(const LabelCommand& command, const Messages& messages, int threads) {
+  return run_oracle(
       {command.server.map, command.oracle, question_policy(command.questions),
-       negative_policy(command.negatives), command.server.classifier, command.seed, common.threads},
-      console));
-  return ExitStatus::kDone;
+       negative_policy(command.negatives), command.server.classifier, command.seed, threads},
+      messages);
 }
 
 ExitStatus run_label(const LabelCommand& command, Console& console, const CommonOptions& common) {
-  if (!command.oracle.empty()) return play(command, console, common);
-  if (command.look_again) {
-    console.result(run_look_again(command.server.map, command.server.drives, console));
+  const LabelServerRequest& place = command.server;
+  if (!command.oracle.empty() || command.look_again) {
+    console.result(command.oracle.empty() ? run_look_again(place.map, place.drives, console)
+                                          : play(command, console, common.threads));
     return ExitStatus::kDone;
   }
   if (command.replay) {
-    const auto result =
-        run_replay(command.server.map, command.server.drives, common.threads, console);
+    const auto result = run_replay(place.map, place.drives, common.threads, console);
     console.result(result);
     return result.at("same").get<bool>() ? ExitStatus::kDone : ExitStatus::kRefused;
   }
@@ -49,8 +48,8 @@ ExitStatus run_label(const LabelCommand& command, Console& console, const Common
   server_options.port = command.port;
   if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);
   HttpServer server(server_options);  // first, so that a port in use is reported at once
-  const std::size_t changes = serve_labels(command.server, server, console);
-  const std::size_t labels = read_labels(command.server.map).size();
+  const std::size_t changes = serve_labels(place, server, console);
+  const std::size_t labels = read_labels(place.map).size();
   console.say(std::to_string(labels) + " labels, " + std::to_string(changes) + " changes");
   console.result({{"labels", labels}, {"changes", changes}});
   return ExitStatus::kDone;

@@ -9,8 +9,9 @@ namespace {
 
 using SquaredDistance = cvflann::L2_Simple<double>;
 
-constexpr double kMarginM =
-    1e-6;  // the tree's test is strict and rounds; the caller's test decides
+// The tree compares strictly and with a radius in single precision; the exact test below decides.
+constexpr double kRelativeMargin = 1e-6;
+constexpr double kMarginM = 1e-6;
 constexpr int kLeafSize = 10;
 
 cv::Mat positions_of(const Map& map) {
@@ -43,7 +44,7 @@ std::vector<std::size_t> KeyframeIndex::within(const Eigen::Vector2d& place,
                                                double radius_m) const {
   if (!tree_) return {};
   const std::vector<double> query{place.x(), place.y()};
-  const double reach = radius_m + kMarginM;
+  const double reach = radius_m * (1.0 + kRelativeMargin) + kMarginM;
   std::vector<int> hits(map_->keyframes.size());
   std::vector<double> squared(hits.size());
   const int count = tree_->index.radiusSearch(query, hits, squared, reach * reach,

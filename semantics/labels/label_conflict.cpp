@@ -9,7 +9,7 @@ LabelConflict::LabelConflict(Label current_label)
     : Error(ExitStatus::kRefused,
             "error: " +
                 (current_label.id == 0 ? "classes" : "label " + std::to_string(current_label.id)) +
-                ": version: got an older version, want " + std::to_string(current_label.version)),
+                ": version: got another version, want " + std::to_string(current_label.version)),
       current(std::move(current_label)) {}
 
 LabelStepElsewhere::LabelStepElsewhere(const Label& changed)

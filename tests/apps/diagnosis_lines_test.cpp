@@ -15,8 +15,8 @@ TEST(DiagnosisLines, SizesHaveAsManyDigitsAsTheirIntervalsKnow) {
   cause.low = -0.48507702249648960;
   cause.high = -0.48299666794497148;
   d.causes.push_back(cause);
-  EXPECT_TRUE(
-      to_lines(d).front().starts_with("wheels0.radius = -0.4840 (95 %: -0.4851 to -0.4830), gain"))
+  EXPECT_TRUE(to_lines(d).front().starts_with(
+      "wheels0.radius = -0.4840 (95 %: -0.4851 to -0.4830), held-out gain"))
       << to_lines(d).front();
 }
 

@@ -114,7 +114,7 @@ bool is_rule(const std::string& row) {
   return row.starts_with("|-") && row.find_first_not_of("|-: ") == std::string::npos;
 }
 
-// An editing tool may put a rule in place of a row. The table then still looks like one.
+// A table with a rule in place of a row still looks like a table.
 TEST(Documents, TablesHaveOneRuleAndEqualRows) {
   for (const fs::path& page : pages()) {
     std::vector<std::string> table;

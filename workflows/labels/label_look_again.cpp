@@ -40,7 +40,7 @@ nlohmann::ordered_json run_look_again(const std::filesystem::path& map,
   add_sightings(sightings, labels);
   const LabelAgreement agreement = agreement_of(store.map(), labels);
   messages.say(std::to_string(agreement.sightings.size()) +
-               " labels found in another session, median distance " +
+               " sightings of labels in other sessions, median distance " +
                fixed(100.0 * agreement.median_m, 1) + " cm (" + fixed(agreement.median_sigmas, 1) +
                " standard deviations): " +
                (agreement.contradicts() ? "more than the poses allow, the map is distorted"

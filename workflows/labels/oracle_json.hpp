@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-/// The rounds in the form that results print (design.md: `drawn`, `clicks`, `precision`, `recall`;
-/// also `put_right`).
+/// The rounds in the form that `--json` prints: `drawn`, `put_right`, `clicks`, `precision`,
+/// `recall`.
 [[nodiscard]] inline nlohmann::ordered_json oracle_rounds_json(
     const std::vector<OracleRound>& rounds) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();

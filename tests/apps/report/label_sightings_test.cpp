@@ -99,7 +99,7 @@ TEST_F(LabelSightings, AreFoundByTheProgramInTheRecordingsOfAMap) {
   EXPECT_NE(seen.out.find("the map is distorted"), std::string::npos) << seen.out;
   const LabelAgreement agreement = reported();
   EXPECT_NE(seen.out.find(std::to_string(agreement.sightings.size()) +
-                          " labels found in another session"),
+                          " sightings of labels in other sessions"),
             std::string::npos)
       << seen.out;
   SightingRecord in_memory;
@@ -128,7 +128,7 @@ TEST_F(LabelSightings, AreNotLookedForWhereThereIsNothingToLookFor) {
   test::write_lot(map_, {});
   const auto none = test::run_command("roadbook label -m two.gpkg --look-again", folder_.path());
   EXPECT_EQ(none.status, 2);
-  EXPECT_NE(none.err.find("two.gpkg: labels: got too few, want one on the ground"),
+  EXPECT_NE(none.err.find("two.gpkg: labels: got too few, want at least one label on the ground"),
             std::string::npos)
       << none.err;
   {
@@ -142,7 +142,7 @@ TEST_F(LabelSightings, AreNotLookedForWhereThereIsNothingToLookFor) {
   }
   const auto alone = test::run_command("roadbook label -m two.gpkg --look-again", folder_.path());
   EXPECT_EQ(alone.status, 2);
-  EXPECT_NE(alone.err.find("two.gpkg: sessions: got too few, want two or more"), std::string::npos)
+  EXPECT_NE(alone.err.find("two.gpkg: sessions: got too few, want at least two"), std::string::npos)
       << alone.err;
 }
 

@@ -66,7 +66,7 @@ TEST_F(MapVerb, LabelsOfOtherDrivesAreNotWrittenOver) {
   }
   expect_refused(
       "error: place.gpkg: labels: got 1 of drive lot, want these drives first, in this order "
-      "(lot), or another file for the map");
+      "(lot), or another map file (export and import keep the labels)");
 }
 
 TEST_F(MapVerb, ADamagedMapIsToldAndLeftAsItIs) {

@@ -195,7 +195,7 @@ TEST(LoggedColumns, WhatCannotBeUsedIsSaidAndInventsNothing) {
   EXPECT_TRUE(found.causes.empty() && found.unknown.empty());
   EXPECT_TRUE(says(found.notes, "flat does not vary"));
   EXPECT_TRUE(says(found.notes, "few has 9 readings in this drive"));
-  EXPECT_TRUE(says(found.notes, "early is known in "));
+  EXPECT_TRUE(says(found.notes, "early has values for "));
 
   streams.columns = {sampled("speed", [](double t) { return std::sin(t); })};
   EXPECT_THROW((void)diagnose(streams, "drive"), BadInput);

@@ -231,7 +231,7 @@ TEST(HiddenEffects, AWetPatchStaysOutOfTheModelAndIsFoundAgainAsItIs) {
   EXPECT_EQ(second.causes[0].size, first.causes[0].size);
   EXPECT_EQ(second.extended, options.known);
   ASSERT_FALSE(second.notes.empty());
-  EXPECT_TRUE(second.notes.back().starts_with("wheels0.wet_patch of the model has no place"));
+  EXPECT_TRUE(second.notes.back().starts_with("wheels0.wet_patch of the known model has no place"));
 }
 
 // The date selects size, radius and place. On a smooth oval, only the patch is abrupt. With

@@ -47,11 +47,13 @@ TEST(KeyframeIndex, FindsWhatAScanOfAllKeyframesFinds) {
 }
 
 TEST(KeyframeIndex, CountsAKeyframeAtExactlyTheRadius) {
-  Map map = scattered_map(1);
-  map.map_frames[0].T_map_frame = pose_from_planar(3.0, 4.0, 0.0);
-  const KeyframeIndex index(map);
-  EXPECT_EQ(index.within({0.0, 0.0}, 5.0).size(), 1U);
-  EXPECT_TRUE(index.within({0.0, 0.0}, 4.999999).empty());
+  for (const double scale : {1.0, 20.0, 200.0}) {
+    Map map = scattered_map(1);
+    map.map_frames[0].T_map_frame = pose_from_planar(3.0 * scale, 4.0 * scale, 0.0);
+    const KeyframeIndex index(map);
+    EXPECT_EQ(index.within({0.0, 0.0}, 5.0 * scale).size(), 1U) << scale;
+    EXPECT_TRUE(index.within({0.0, 0.0}, 4.999999 * scale).empty()) << scale;
+  }
 }
 
 }  // namespace

@@ -226,11 +226,15 @@ TEST(Nav2Export, ASpaceAlongItsLaneIsEnteredOverItsLongSide) {
   export_map(place.map, "nav2", place.folder / "mask.pgm");
   export_map(place.map, "path", place.folder / "lanes.json");
   const std::string mask = path_in(place.folder, "mask_keepout.yaml");
-  // Before the long side; where a vehicle pulls in; beyond both short sides, away from the lane.
+  // Before the long side; where a vehicle pulls in, by the direction of the lane from one side
+  // alone; beyond both short sides, away from the lane.
   write_lines(place.folder / "points.txt",
-              {{50.5, 1.5}, {55.0, 1.5}, {47.5, 1.5}, {58.0, 1.5}, {41.5, 3.4}, {64.0, 3.4}});
-  EXPECT_EQ(nav2("cells " + mask + " " + path_in(place.folder, "points.txt")),
-            (std::vector<double>{0, 0, 0, 0, 100, 100}));
+              {{50.5, 1.5}, {55.0, 1.5}, {41.5, 3.4}, {64.0, 3.4}, {47.5, 1.5}, {58.0, 1.5}});
+  const auto cells = nav2("cells " + mask + " " + path_in(place.folder, "points.txt"));
+  ASSERT_EQ(cells.size(), 6U);
+  EXPECT_EQ(std::vector<double>(cells.begin(), cells.begin() + 4),
+            (std::vector<double>{0, 0, 100, 100}));
+  EXPECT_EQ(cells[4] + cells[5], 100.0);
   write_lines(place.folder / "space.txt", {{52.75, 3.05}});
   EXPECT_EQ(nav2("connected " + mask + " " + path_in(place.folder, "lanes.json") + " 1.9 " +
                  path_in(place.folder, "space.txt")),

@@ -90,52 +90,46 @@ TEST(PlannerMap, ASpaceIsLinkedToTheLaneBeforeItsOpenSide) {
   EXPECT_EQ(found.link->left, at.tangent.y() < 0.0);  // the space lies east of the aisle
 }
 
-// A ramp of one lane that winds twice about its axis: each point has the lane below or above it.
-TEST(PlannerMap, ASpaceOnARampIsLinkedOnItsOwnFloor) {
-  constexpr double kRadius_m = 12.0;
-  constexpr double kRise_m = 3.0;  // a turn
+// A lane that rises in a loop and crosses itself on a bridge. In plan, the space beside the
+// crossing is nearer to the upper part of the lane than to the lower one, which it belongs to.
+TEST(PlannerMap, ASpaceUnderABridgeIsLinkedToTheLowerPartOfItsLane) {
   DrivenPass pass;
-  for (double turn = 0.0; turn <= 4.0 * M_PI; turn += 0.02)
-    pass.positions.emplace_back(kRadius_m * std::cos(turn), kRadius_m * std::sin(turn),
-                                kRise_m * turn / (2.0 * M_PI));
+  for (double x = 0.0; x < 45.0; x += 0.2) pass.positions.emplace_back(x, 0.0, 0.0);
+  for (double turn = 0.0; turn < 1.5 * M_PI; turn += 0.0133)
+    pass.positions.emplace_back(45.0 + 15.0 * std::sin(turn), 15.0 - 15.0 * std::cos(turn),
+                                3.0 * turn / (1.5 * M_PI));
+  for (double y = 15.0; y > -25.0; y -= 0.2) pass.positions.emplace_back(30.0, y, 3.0);
   const RoadNetwork network = build_road_network({pass});
   ASSERT_EQ(network.lanes.size(), 1U);
-  const auto paths = lane_paths(network, {pass});
   const test::Folder folder;
-  const auto map = folder / "ramp.gpkg";
+  const auto map = folder / "bridge.gpkg";
   MapFileBuilder(map, "key").finish(test::small_map(1), {});
   VectorLayer spaces;
   spaces.name = "parking_spaces";
   spaces.type = GeometryType::kPolygonZ;
   spaces.fields = {{"space", FieldType::kInteger}};
-  const double heights[] = {0.25 * kRise_m, 1.25 * kRise_m};
-  for (const double z : heights) {
-    Feature space;
-    for (const auto& [x, y] :
-         {std::pair{-1.2, 14.0}, {1.2, 14.0}, {1.2, 19.0}, {-1.2, 19.0}, {-1.2, 14.0}})
-      space.points.emplace_back(x, y, z, 0.0);
-    space.values = {static_cast<std::int64_t>(spaces.features.size() + 1)};
-    spaces.features.push_back(space);
-  }
+  Feature space;
+  for (const auto& [x, y] :
+       {std::pair{31.0, 2.5}, {33.0, 2.5}, {33.0, 7.5}, {31.0, 7.5}, {31.0, 2.5}})
+    space.points.emplace_back(x, y, 0.0, 0.0);
+  space.values = {std::int64_t{1}};
+  spaces.features = {space};
   MapUpdate update(map);
   const NetworkSource source{"drive 0", "2014-06-24T18:02:59.763Z", 0.02};
   write_network_layers(update, network, source);
-  write_path_layers(update, paths, network, source);
+  write_path_layers(update, lane_paths(network, {pass}), network, source);
   update.write_layer(spaces);
   update.commit();
   const PlannerMap planner(map);
-  ASSERT_EQ(planner.spaces().size(), 2U);
-  const double turn_m = 2.0 * M_PI * kRadius_m;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const PlannerSpace& space = planner.spaces()[i];
-    ASSERT_TRUE(space.link) << space.no_link;
-    const LanePiece& piece = planner.layout().pieces[static_cast<std::size_t>(space.link->piece)];
-    const bool upwards = network.lanes[0].centre.front().z() < 1.0 && !piece.turned;
-    const double from_below = upwards ? space.link->s_m : piece.curve.length_m() - space.link->s_m;
-    EXPECT_NEAR(from_below, (0.25 + static_cast<double>(i)) * turn_m, 1.0);
-    EXPECT_NEAR(space.link->distance_m, 2.0, 0.1);
-    EXPECT_EQ(space.link->left, !upwards);  // outside of a turn to the left
-  }
+  ASSERT_EQ(planner.spaces().size(), 1U);
+  const auto& link = planner.spaces().front().link;
+  ASSERT_TRUE(link) << planner.spaces().front().no_link;
+  const LanePiece& piece = planner.layout().pieces[static_cast<std::size_t>(link->piece)];
+  const PathPoint at = piece.curve.at(link->s_m);
+  EXPECT_NEAR(at.position.x(), 32.0, 0.2);
+  EXPECT_NEAR(at.position.y(), 0.0, 0.2);
+  EXPECT_NEAR(link->distance_m, 2.5, 0.2);
+  EXPECT_EQ(link->left, at.tangent.x() > 0.0);  // the space lies at positive y
 }
 
 }  // namespace
