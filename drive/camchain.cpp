@@ -97,13 +97,22 @@ std::vector<std::filesystem::path> camchain_files(const std::filesystem::path& f
 
 namespace {
 
-void compare_camchain(const std::filesystem::path& file, const Rig& rig, ProblemList& problems) {
-  Calibration chain;
-  try {
-    chain = read_kalibr_camchain(file);
-  } catch (const BadInput& bad) {
-    return problems.add_all(bad.problems());
+// What a file states of the cameras of the rig.
+struct Statement {
+  bool lenses = false;
+  bool poses_in_vehicle = false;
+  bool times = false;
+
+  [[nodiscard]] bool covers(const Statement& other) const {
+    return lenses && (poses_in_vehicle || !other.poses_in_vehicle) && (times || !other.times);
   }
+};
+
+Statement compare_camchain(const Calibration& chain,
+                           const std::filesystem::path& file,
+                           const Rig& rig,
+                           ProblemList& problems) {
+  Statement stated;
   Comparison comparison(file.string(), problems);
   // If the first camera is the chain's reference, the compared poses are relative to it too.
   const MountedCamera* const first = find(rig, chain.rig.cameras.front().name);
@@ -116,6 +125,9 @@ void compare_camchain(const std::filesystem::path& file, const Rig& rig, Problem
                        "the cameras of the drive");
       continue;
     }
+    stated.lenses = true;
+    stated.poses_in_vehicle = stated.poses_in_vehicle || !among_cameras;
+    stated.times = stated.times || chain.states_time[i];
     comparison.lens(camera, *mounted);
     // Kalibr writes no time offset where it calibrated cameras alone.
     if (chain.states_time[i]) comparison.time(camera, *mounted);
@@ -127,6 +139,7 @@ void compare_camchain(const std::filesystem::path& file, const Rig& rig, Problem
   for (const auto& camera : rig.cameras)
     if (find(chain.rig, camera.name) == nullptr)
       problems.warning(file.string(), 0, camera.name, "nothing", "every camera of the drive");
+  return stated;
 }
 
 }  // namespace
@@ -135,14 +148,21 @@ void check_camchains(const std::vector<std::filesystem::path>& files,
                      const Rig& rig,
                      ProblemList& problems) {
   std::vector<ProblemList> found(files.size());
-  for (std::size_t i = 0; i < files.size(); ++i) compare_camchain(files[i], rig, found[i]);
-  const bool one_agrees = std::any_of(found.begin(), found.end(),
-                                      [](const ProblemList& list) { return !list.has_errors(); });
-  for (const ProblemList& list : found)
-    for (Problem problem : list.problems()) {
-      if (one_agrees) problem.severity = Severity::kWarning;
+  std::vector<Statement> stated(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) try {
+      stated[i] = compare_camchain(read_kalibr_camchain(files[i]), files[i], rig, found[i]);
+    } catch (const BadInput& bad) {
+      problems.add_all(bad.problems());
+    }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    bool another_agrees = false;
+    for (std::size_t k = 0; k < files.size(); ++k)
+      another_agrees = another_agrees || (!found[k].has_errors() && stated[k].covers(stated[i]));
+    for (Problem problem : found[i].problems()) {
+      if (another_agrees) problem.severity = Severity::kWarning;
       problems.add(std::move(problem));
     }
+  }
 }
 
 }  // namespace roadbook

@@ -21,8 +21,8 @@ namespace roadbook {
 /// camera of the same name. Another model or resolution, parameters that differ by more than 1e-6
 /// of their size, a pose (T_cam_imu * T_BS; among the cameras where the chain knows no body) off
 /// the identity by more than 1e-6 and a stated time offset off by more than 1e-6 s are errors that
-/// name file, camera and field; they are warnings where another of the files agrees with the rig. A
-/// camera that only one of the two knows is a warning.
+/// name file, camera and field; they are warnings where another file, which states as much, agrees
+/// with the rig. A camera that only one of the two knows is a warning.
 void check_camchains(const std::vector<std::filesystem::path>& files,
                      const Rig& rig,
                      ProblemList& problems);

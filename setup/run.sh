@@ -56,7 +56,7 @@ exit_status=0
 # MARK.
 is_newer() {
   if [ -d "$1" ]; then
-    [ -n "$(find "$1" -maxdepth 3 \( -name '*.yaml' -o -name '*.csv' -o -name mask.png \) -newer "$2" | head -n 1)" ]
+    [ -n "$(find "$1" -maxdepth 3 \( -name '*.yaml' -o -name '*.csv' -o -name mask.png -o -type d -name 'cam*' \) -newer "$2" | head -n 1)" ]
   else
     [ "$1" -nt "$2" ]
   fi

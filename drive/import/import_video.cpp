@@ -21,15 +21,13 @@ constexpr const char* kFramesWanted =
 
 void warn_of_frames_without_stamp(const fs::path& file,
                                   const FrameStamps& stamps,
-                                  const ImportOptions& options,
                                   ImportResult& result) {
-  LeftOut frames(file, "frames", "have a blank line for their stamp", "a stamp for each frame");
-  for (const auto& stamp : stamps)
-    if (stamp)
-      frames.take();
-    else
-      frames.leave(0);
-  frames.report(options, result);
+  const auto blank = std::count(stamps.begin(), stamps.end(), std::nullopt);
+  if (blank == 0) return;
+  result.warnings.push_back({Severity::kWarning, file.string(), 0, "frames",
+                             std::to_string(blank) + " of " + std::to_string(stamps.size()) +
+                                 " frames with a blank line for their stamp; left out",
+                             "a stamp for each frame"});
 }
 
 // A row a frame: a blank line is a frame without a stamp.
@@ -134,7 +132,7 @@ ImportResult import_video(const ImportJob& job) {
   writing.comment = "frames of " + videos.front().filename().string();
   ImportResult result;
   DriveWriter writer(job.out, rig, std::nullopt, writing);
-  warn_of_frames_without_stamp(job.source / "frames.csv", stamps, job.options, result);
+  warn_of_frames_without_stamp(job.source / "frames.csv", stamps, result);
   result.images = import_video_frames(videos.front(), stamps, writer, job.progress);
   writer.finish();
   return result;

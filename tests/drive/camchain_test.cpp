@@ -77,6 +77,24 @@ TEST(Camchain, OfWhichOneAgreesTurnsTheFaultsOfTheOthersIntoWarnings) {
       << both;
 }
 
+// Kalibr writes a file of the cameras alone first, and one with times and the body later.
+TEST(Camchain, ThatStatesLessDoesNotExcuseTheFaultsOfAnother) {
+  const TemporaryFolder folder;
+  const fs::path drive = write_small_drive(folder.path() / "d");
+  Rig rig = small_rig();
+  std::string without_times = kalibr_camchain_text(rig);
+  for (std::size_t at; (at = without_times.find("  timeshift_cam_imu")) != std::string::npos;)
+    without_times.erase(at, without_times.find('\n', at) + 1 - at);
+  write_text(drive / "bag-camchain.yaml", without_times);
+  rig.cameras[1].time_offset_s += 0.02;
+  write_text(drive / "bag-camchain-imucam.yaml", kalibr_camchain_text(rig));
+  const auto text = all_lines(check_drive(drive));
+  EXPECT_NE(text.find("error: " + (drive / "bag-camchain-imucam.yaml").string() +
+                      ": cam1.timeshift_cam_imu"),
+            std::string::npos)
+      << text;
+}
+
 // Kalibr's own file names.
 TEST(Camchain, UnderTheNamesThatKalibrGivesIsReadAndCompared) {
   for (const char* const name : {"camchain-imucam-bag.yaml", "camchain-2021-01-01.yaml",

@@ -43,9 +43,11 @@ Axis entry_over(const PlannerSpace& space, std::size_t first, const PathPoint& l
   axis.lane_tangent = lane.tangent;
   // The lane as a straight line through its nearest point.
   const Eigen::Vector2d across = lane.position - axis.front;
-  const double distance_m = cross(across, lane.tangent) / cross(axis.outwards, lane.tangent);
-  axis.to_lane_m =
-      std::isfinite(distance_m) ? std::clamp(distance_m, 0.0, 4.0 * across.norm()) : 0.0;
+  const double sine = cross(axis.outwards, lane.tangent);
+  // Straight ahead of the end of a lane: as far as that end.
+  axis.to_lane_m = std::abs(sine) < 0.3
+                       ? across.norm()
+                       : std::clamp(cross(across, lane.tangent) / sine, 0.0, 4.0 * across.norm());
   return axis;
 }
 
@@ -55,7 +57,10 @@ Axis axis_of(const PlannerSpace& space, const LanePiece& piece) {
   constexpr double kParallel = 0.8;  // cosine
   const PathPoint lane = piece.curve.at(space.link->s_m);
   const Axis over_open_side = entry_over(space, 0, lane);
-  if (std::abs(over_open_side.outwards.dot(lane.tangent)) <= kParallel) return over_open_side;
+  const Eigen::Vector2d& out = over_open_side.outwards;
+  const Eigen::Vector2d across = lane.position - over_open_side.front;
+  const bool lane_is_beside = std::abs(cross(out, across)) > std::abs(out.dot(across));
+  if (std::abs(out.dot(lane.tangent)) <= kParallel || !lane_is_beside) return over_open_side;
   for (const std::size_t side : {std::size_t{1}, std::size_t{3}}) {
     Axis axis = entry_over(space, side, lane);
     axis.parallel = true;

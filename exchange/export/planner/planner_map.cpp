@@ -72,8 +72,6 @@ bool is_of_class(const VectorLayer& layer, std::size_t index, const std::string&
          std::get<std::string>(values[*column]) == kind;
 }
 
-constexpr double kLinkReach_m = 2.0;  // along the lane, between its polyline and its path
-
 // Place on a curve nearest to a point, at most `reach_m` from `around_m` along the curve: a lane
 // may pass the same point twice.
 double nearest_on(const PathCurve& curve,
@@ -190,9 +188,12 @@ std::optional<SpaceLink> PlannerMap::link_of(const SpacePlace& space, std::strin
         found.place.s_m / stored_.network.lanes[static_cast<std::size_t>(piece.lane)].length_m;
     const double length_m = piece.curve.length_m();
     const double around_m = length_m * (piece.turned ? 1.0 - share : share);
+    // Reach: the polyline differs from the path, and the link lies before the open side rather than
+    // nearest to it.
     const Eigen::Vector2d front = space.front.head<2>();
     SpaceLink link{found.lane, static_cast<int>(i),
-                   nearest_on(piece.curve, front, around_m, kLinkReach_m)};
+                   nearest_on(piece.curve, front, around_m,
+                              2.0 + 0.3 * found.place.distance_m + 0.01 * length_m)};
     link.left = piece.turned ? !found.left : found.left;
     link.distance_m = (front - piece.curve.at(link.s_m).position).norm();
     return link;

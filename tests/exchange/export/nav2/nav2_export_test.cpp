@@ -241,6 +241,28 @@ TEST(Nav2Export, ASpaceAlongItsLaneIsEnteredOverItsLongSide) {
             std::vector<double>{1});
 }
 
+// A dead end whose last metres lead straight to a space.
+TEST(Nav2Export, ASpaceAheadOfADeadEndIsReachedFromIt) {
+  const Folder folder;
+  const auto file = folder / "dead_end.gpkg";
+  MapFileBuilder(file, "key").finish(test::small_map(1), {});
+  DrivenPass pass;
+  for (double x = 0.0; x <= 30.0; x += 0.2) pass.positions.emplace_back(x, 0.0, 0.02 * x);
+  const RoadNetwork network = build_road_network({pass});
+  MapUpdate update(file);
+  const NetworkSource source{"drive 0", "2014-06-24T18:02:59.763Z", 0.02};
+  write_network_layers(update, network, source);
+  write_path_layers(update, lane_paths(network, {pass}), network, source);
+  update.commit();
+  write_spaces(file, {{{36.5, 0.3}, 0.0, 5.0, 2.5}});
+  export_map(file, "path", folder / "lanes.json");
+  export_map(file, "nav2", folder / "mask.pgm");
+  write_lines(folder / "space.txt", {{36.5, 0.3}});
+  EXPECT_EQ(nav2("connected " + path_in(folder, "mask_keepout.yaml") + " " +
+                 path_in(folder, "lanes.json") + " 1.9 " + path_in(folder, "space.txt")),
+            std::vector<double>{1});
+}
+
 // The lot has one aisle and an overhead image. Landmarks form a wall along y = 5. No other ground
 // is known.
 TEST(Nav2Export, GroundBehindAWallIsForbiddenAndBeforeItFree) {
