@@ -38,7 +38,7 @@ class CellGrid {
     cells_[cell_at<kAxes>(p, cell_m_)].push_back(value);
   }
 
-  /// The values in the cell of `p`, in the order of insertion; null if there are none.
+  /// Returns the values in the cell of `p`, in the order of insertion; null if the cell is empty.
   [[nodiscard]] const std::vector<Value>* find(const Point& p) const {
     return values_of(cell_at<kAxes>(p, cell_m_));
   }

@@ -11,8 +11,9 @@ namespace roadbook {
 /// sight.
 [[nodiscard]] DriveReadings without_known(DriveReadings readings, const EffectSizes& known);
 
-/// Removes from findings what a model knows already, if the fit did not know it (all effects except
-/// those that `without_known` subtracts, and detector.range, with which the fit begins). An effect
+/// Removes the effects of the known model from the findings, as far as the fit did not start from
+/// them. The fit starts from the effects that `without_known` subtracts and from detector.range. An
+/// effect
 /// whose size differs significantly from the known one (p < 0.01, corrected for the number of
 /// effects; noise included) stays: size and interval are then those of the difference, and the gain
 /// is that of large samples. Other known effects are removed. Effects of one place stay unchanged,

@@ -53,7 +53,8 @@ std::vector<Views> views_of(const Map& map, int session, const std::vector<Landm
   return views;
 }
 
-// For each keyframe of other sessions the most similar keyframe of the drive; -1 if there is none.
+// Returns the most similar keyframe of the drive for each keyframe of other sessions; -1: no
+// similar one.
 std::vector<int> keyframes_alike(const Map& map, int session, const RedetectionOptions& options) {
   const auto count = static_cast<int>(map.keyframes.size());
   std::vector<Eigen::Isometry3d> poses;

@@ -38,8 +38,8 @@ HeldEffects saturated_library(const Observations& obs,
   options.places = false;
   options.grammar = with_terms;
   std::vector<Candidate> candidates = list_candidates(obs, point, options);
-  // Nor effects that move readings exactly as a free effect does: poses with autocorrelated errors
-  // would use both.
+  // Leave out effects that change readings in the same way as a free effect: poses with
+  // autocorrelated errors would use both.
   std::erase_if(candidates, [](const Candidate& c) {
     return c.covariate == "place" || c.covariate.ends_with("acceleration") ||
            c.covariate.ends_with("phase") || c.hook == "poses.scale" || c.hook == "steering0.time";

@@ -130,7 +130,8 @@ double usual_growth(const std::vector<WheelWindow>& windows, const WheelParamete
   return sum / static_cast<double>(windows.size());
 }
 
-// Readings of a window, of which `part` contributes to its square.
+// The shape of a window of `readings` readings; `part`: the share of them that contributes to the
+// window's mean square.
 LookShape shape_of(double readings, double part) {
   // For equally spaced readings about their parabola, by orthogonal polynomials; symmetric. The
   // parts add up to `part`.

@@ -22,8 +22,9 @@ struct GroupCount {
 [[nodiscard]] double group_log(const GroupCount& group, double scatter);
 /// Probability of that count or fewer.
 [[nodiscard]] double group_tail(const GroupCount& group, double scatter);
-/// Log density of a group of which only a part of the expected share remains: up to `kMostLeft`,
-/// with all parts equally likely a priori. The items are treated as equal.
+/// Log density of the counts of a group that lost most of its items. The remaining part lies
+/// between 0 and `kMostLeft`; all parts are equally likely a priori. The items are treated as
+/// equal.
 inline constexpr double kMostLeft = 0.4;
 [[nodiscard]] double fallen_log(const GroupCount& group);
 

@@ -39,7 +39,8 @@ void write_friction_layers(MapUpdate& update, const FrictionMap& friction);
                                        const std::string& map_name,
                                        std::size_t property = 0);
 
-/// Index of a property by name. Throws InvalidOption for `option` if there is none.
+/// Returns the index of the property with this name. Throws InvalidOption, which names `option`,
+/// for an unknown property.
 [[nodiscard]] std::size_t property_of(const PropertyMap& map,
                                       const std::string& name,
                                       const char* option);

@@ -7,8 +7,8 @@
 namespace roadbook {
 
 const std::string& map_crs_wkt() {
-  // A GeoTIFF keeps neither a datum's name nor the axes' (it gives back these), and programs refuse
-  // to combine layers whose definitions differ.
+  // A GeoTIFF does not store the names of datum and axes; GDAL reads it back with the names below.
+  // Programs refuse to combine layers with different definitions, so all layers use these names.
   static const std::string wkt =
       R"(ENGCRS["roadbook local frame",EDATUM[""],CS[Cartesian,2],)"
       R"(AXIS["easting",east],AXIS["northing",north],LENGTHUNIT["metre",1,ID["EPSG",9001]]])";

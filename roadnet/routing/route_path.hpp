@@ -21,7 +21,7 @@ struct RoutePoint {
 /// continuous.
 struct RoutePath {
   std::vector<RoutePoint> points;  ///< empty if there is no single curve
-  std::string reason;              ///< why there is none; else empty
+  std::string reason;              ///< why there is no curve; empty if there is one
 };
 
 /// Samples the curve of a route about every `step_m`. A route with legs in reverse gear, or one

@@ -60,20 +60,27 @@ TEST(PlannerMap, WithoutASpeedMapBendsAndTheDefaultLimitCount) {
     }
 }
 
-// A rectangle whose open side faces the aisle at x = 35, 2 m to its right.
-TEST(PlannerMap, ASpaceIsLinkedToTheLaneBeforeItsOpenSide) {
-  const test::Folder folder;
-  const auto map = test::map_with_paths(folder);
+// The layer of one parking space: a ring of corners (x, y) with its height [m].
+template <typename Height>
+VectorLayer one_space(const std::vector<Eigen::Vector2d>& ring, const Height& height) {
   VectorLayer spaces;
   spaces.name = "parking_spaces";
   spaces.type = GeometryType::kPolygonZ;
   spaces.fields = {{"space", FieldType::kInteger}};
   Feature space;
-  for (const auto& [x, y] :
-       {std::pair{42.0, 20.0}, {42.0, 22.5}, {37.0, 22.5}, {37.0, 20.0}, {42.0, 20.0}})
-    space.points.emplace_back(x, y, 0.02 * x, 0.0);
+  for (const Eigen::Vector2d& p : ring) space.points.emplace_back(p.x(), p.y(), height(p.x()), 0.0);
   space.values = {std::int64_t{17}};
   spaces.features = {space};
+  return spaces;
+}
+
+// A rectangle whose open side faces the aisle at x = 35, 2 m to its right.
+TEST(PlannerMap, ASpaceIsLinkedToTheLaneBeforeItsOpenSide) {
+  const test::Folder folder;
+  const auto map = test::map_with_paths(folder);
+  const VectorLayer spaces =
+      one_space({{42.0, 20.0}, {42.0, 22.5}, {37.0, 22.5}, {37.0, 20.0}, {42.0, 20.0}},
+                [](double x) { return 0.02 * x; });
   MapUpdate update(map);
   update.write_layer(spaces);
   update.commit();
@@ -104,16 +111,9 @@ TEST(PlannerMap, ASpaceUnderABridgeIsLinkedToTheLowerPartOfItsLane) {
   const test::Folder folder;
   const auto map = folder / "bridge.gpkg";
   MapFileBuilder(map, "key").finish(test::small_map(1), {});
-  VectorLayer spaces;
-  spaces.name = "parking_spaces";
-  spaces.type = GeometryType::kPolygonZ;
-  spaces.fields = {{"space", FieldType::kInteger}};
-  Feature space;
-  for (const auto& [x, y] :
-       {std::pair{31.0, 2.5}, {33.0, 2.5}, {33.0, 7.5}, {31.0, 7.5}, {31.0, 2.5}})
-    space.points.emplace_back(x, y, 0.0, 0.0);
-  space.values = {std::int64_t{1}};
-  spaces.features = {space};
+  const VectorLayer spaces =
+      one_space({{31.0, 2.5}, {33.0, 2.5}, {33.0, 7.5}, {31.0, 7.5}, {31.0, 2.5}},
+                [](double) { return 0.0; });
   MapUpdate update(map);
   const NetworkSource source{"drive 0", "2014-06-24T18:02:59.763Z", 0.02};
   write_network_layers(update, network, source);
