@@ -11,12 +11,11 @@ namespace roadbook {
 /// sight.
 [[nodiscard]] DriveReadings without_known(DriveReadings readings, const EffectSizes& known);
 
-/// Removes the effects of the known model from the findings, as far as the fit did not start from
-/// them. The fit starts from the effects that `without_known` subtracts and from detector.range. An
-/// effect
-/// whose size differs significantly from the known one (p < 0.01, corrected for the number of
-/// effects; noise included) stays: size and interval are then those of the difference, and the gain
-/// is that of large samples. Other known effects are removed. Effects of one place stay unchanged,
+/// Removes the known effects from the findings, except those that the fit took into account: the
+/// effects that `without_known` subtracts, and detector.range. An effect, noise included, stays if
+/// its size differs significantly from the known one (p < 0.01, corrected for the number of
+/// effects). Its size and interval are then those of the difference, and the gain is that of large
+/// samples. Other known effects are removed. Effects of one place stay unchanged,
 /// since a model does not name the place. For known effects that were considered, `extended` has
 /// the whole size.
 void take_off_known(const EffectSizes& known, Diagnosis& found);

@@ -14,7 +14,7 @@ namespace roadbook {
 /// the nominal model do not reach such sizes. A motion of two seconds ago does not predict the
 /// present one. Readings depend on one over the radius, where Newton's method diverges. The noise
 /// of such a stream would be estimated so large that the stream loses all weight. A stream
-/// keeps its size if a factor explains less than nine tenths of it. Cost: linear in the drive.
+/// gets no factor if the factor explains less than nine tenths of it. Cost: linear in the drive.
 [[nodiscard]] EffectSizes start_of_large_effects(const Observations& obs,
                                                  const EffectSizes& known,
                                                  const LibraryOptions& library);
