@@ -4,19 +4,24 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "drive/images/image_header.hpp"
 #include "vo/still_parts.hpp"
 
 namespace roadbook {
 namespace {
 
 cv::Mat mask_from_file(const std::filesystem::path& file, const cv::Size& half) {
-  const auto refuse = [&](const char* got) {
+  const auto refuse = [&](const std::string& got) {
     throw BadInput({Severity::kError, file.string(), 0, "mask", got,
                     "a grey PNG image with 0 at the own vehicle and 255 elsewhere"});
   };
+  // libpng would print a line of its own about a damaged file.
+  const ImageState state = inspect_image(file).state;
+  if (state != ImageState::kGood && state != ImageState::kUnknown) refuse(to_text(state));
   cv::Mat mask = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
   if (mask.empty()) refuse("no image that can be read");
   if (cv::countNonZero(mask) == 0) refuse("an image with 0 everywhere");

@@ -226,12 +226,14 @@ TEST_F(MapGivenAgain, WithAnotherMaskOfTheOwnVehicleIsBuiltAgain) {
   const auto masked = result_of("map visit0 -m place.gpkg");
   EXPECT_EQ(masked.at("unchanged"), false);
   EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), true);
-  for (const std::string& faulty : {std::string("no image"), std::string("P5\n1 1\n255\n\0", 12)}) {
+  for (const std::string& faulty : {std::string("no image"), std::string("P5\n1 1\n255\n\0", 12),
+                                    std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16)}) {
     std::ofstream(mask, std::ios::binary) << faulty;
-    const auto refused = test::run_command("roadbook map visit0 -m place.gpkg", folder_.path());
+    const auto refused = test::run_command("roadbook map visit0 -m place.gpkg -q", folder_.path());
     EXPECT_EQ(refused.status, 2);
     EXPECT_NE(refused.err.find("visit0/cam0/mask.png: mask: got "), std::string::npos)
         << refused.err;
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
   }
   fs::remove(mask);
   EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), false);
