@@ -40,6 +40,7 @@ Experiment people_experiment();
 Experiment labels_experiment();
 Experiment laps_experiment();
 Experiment rows_experiment();
+Experiment robustness_experiment();
 
 /// Returns all experiments. To add one, declare its function above and list it in
 /// apps/verbs/evaluate_verb.cpp.
