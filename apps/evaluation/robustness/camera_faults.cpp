@@ -5,6 +5,7 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "apps/evaluation/robustness/drive_fault.hpp"
 #include "apps/evaluation/robustness/recorded_table.hpp"
@@ -138,6 +139,29 @@ CameraChange deep(int bits) {
   });
 }
 
+// A wall of grey squares that slides by in front of the right half of every image, as a long lorry
+// does: 3 pixels an image.
+void cover_with_moving_things(const fs::path& camera, Random& random) {
+  const RecordedTable table(camera / "data.csv");
+  const std::size_t column = table.column("filename");
+  cv::Mat squares(60, 200, CV_8UC1);
+  for (int row = 0; row < squares.rows; ++row)
+    for (int i = 0; i < squares.cols; ++i)
+      squares.at<std::uint8_t>(row, i) = static_cast<std::uint8_t>(40 + random.below(160));
+  cv::Mat wall;
+  cv::resize(squares, wall, {}, 8.0, 8.0, cv::INTER_NEAREST);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const fs::path file = camera / "data" / table.cell(row, column);
+    cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+    const int half = image.cols / 2;
+    const int shift = 3 * static_cast<int>(row) % (wall.cols - half);
+    cv::Mat part = image(cv::Rect(half, 0, image.cols - half, std::min(image.rows, wall.rows)));
+    wall(cv::Rect(shift, 0, part.cols, part.rows)).copyTo(part);
+    fs::remove(file);
+    cv::imwrite(file.string(), image);
+  }
+}
+
 DriveFault swapped() {
   return {"cameras: two swapped", [](const fs::path& drive, Random& random) {
             const std::uint64_t a = random.below(kCameras);
@@ -166,6 +190,7 @@ std::vector<DriveFault> camera_faults() {
           one_camera("1 us late", late(1'000)),
           one_camera("20 ms late", late(20'000'000)),
           one_camera("80 ms late", late(80'000'000)),
+          all_cameras("moving things over half the view", cover_with_moving_things),
           all_cameras("black", one_grey(0.0)),
           all_cameras("white", one_grey(255.0)),
           all_cameras("12 bits in 16", deep(12)),

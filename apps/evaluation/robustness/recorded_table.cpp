@@ -56,6 +56,10 @@ std::string& RecordedTable::cell(std::size_t row, std::size_t column) {
   return cells_.at(row).at(column);
 }
 
+const std::string& RecordedTable::cell(std::size_t row, std::size_t column) const {
+  return cells_.at(row).at(column);
+}
+
 double RecordedTable::number(std::size_t row, std::size_t column) const {
   const std::string& text = cells_.at(row).at(column);
   if (const auto value = parse_double(text)) return *value;

@@ -20,6 +20,7 @@ class RecordedTable {
   /// Index of the first column whose name begins with `name`. Throws BadInput if there is none.
   [[nodiscard]] std::size_t column(std::string_view name) const;
   [[nodiscard]] std::string& cell(std::size_t row, std::size_t column);
+  [[nodiscard]] const std::string& cell(std::size_t row, std::size_t column) const;
   /// A cell as a number. Throws BadInput if it is not one.
   [[nodiscard]] double number(std::size_t row, std::size_t column) const;
   void set(std::size_t row, std::size_t column, double value);
