@@ -7,8 +7,8 @@ Draws mutants by seed, the same number for every module. Builds and tests them o
 FOLDER: a clone of this repository with its own build, made if it does not exist, and used again
 otherwise. For each mutant the tests of its module run first, then those of the other modules from
 the shortest on, until one fails or until the tests would need more than --test-seconds. A build
-that fails is no mutant; another one is drawn. A test that takes three times as long as usual has
-noticed the mutant too.
+that fails is no mutant; another one is drawn. A test program that takes five times as
+long as usual (and two minutes) has noticed the mutant too.
 
 Equivalent mutants, which change no behaviour, stand with their reasons in equivalent.txt beside
 this script: one `FILE | KIND | LINE | OLD -> NEW | REASON` a line. They are not drawn.
@@ -138,7 +138,7 @@ def judge(copy, mutant, programs, seconds, limit, log):
                 continue
             if not copy.make([name], log):
                 return ("no build", name)
-            passed = copy.test(programs[name], 3.0 * seconds[name] + 30.0, log)
+            passed = copy.test(programs[name], 5.0 * seconds[name] + 120.0, log)
             if passed is not True:
                 return ("noticed" if passed is False else "noticed by time", name)
             spent += seconds[name]

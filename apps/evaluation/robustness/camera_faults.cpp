@@ -140,10 +140,11 @@ CameraChange deep(int bits) {
 }
 
 // A wall of grey squares that slides by in front of the right half of every image, as a long lorry
-// does: 3 pixels an image.
+// does: 1 to 4 pixels an image.
 void cover_with_moving_things(const fs::path& camera, Random& random) {
   const RecordedTable table(camera / "data.csv");
   const std::size_t column = table.column("filename");
+  const int speed_px = 1 + static_cast<int>(random.below(4));
   cv::Mat squares(60, 200, CV_8UC1);
   for (int row = 0; row < squares.rows; ++row)
     for (int i = 0; i < squares.cols; ++i)
@@ -154,7 +155,7 @@ void cover_with_moving_things(const fs::path& camera, Random& random) {
     const fs::path file = camera / "data" / table.cell(row, column);
     cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
     const int half = image.cols / 2;
-    const int shift = 3 * static_cast<int>(row) % (wall.cols - half);
+    const int shift = speed_px * static_cast<int>(row) % (wall.cols - half);
     cv::Mat part = image(cv::Rect(half, 0, image.cols - half, std::min(image.rows, wall.rows)));
     wall(cv::Rect(shift, 0, part.cols, part.rows)).copyTo(part);
     fs::remove(file);
