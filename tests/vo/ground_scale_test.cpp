@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/random.hpp"
 
 namespace roadbook {
@@ -23,6 +25,17 @@ TEST(GroundScale, FindsTheGroundAmongHigherPoints) {
     ASSERT_TRUE(found);
     // 100 points of 1.3 % each, and a few walls that end near the ground.
     EXPECT_NEAR(found->scale, truth, 0.012 * truth);
+  }
+}
+
+// The error of the mean of n points is that of one point over the root of n.
+TEST(GroundScale, TheSigmaIsTheStandardErrorOfTheMode) {
+  for (const int count : {100, 400}) {
+    const auto found = ground_scale(ratios(1.0, count, 0, 8));
+    ASSERT_TRUE(found);
+    const double expected = 0.02 / 1.5 / std::sqrt(count);
+    EXPECT_NEAR(found->sigma, expected, 0.15 * expected);
+    EXPECT_NEAR(found->support, count, 1);
   }
 }
 

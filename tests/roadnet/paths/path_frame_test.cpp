@@ -54,6 +54,26 @@ TEST(PathFrame, RoundTripIsExactToANanometreInsideTheTube) {
       2);
 }
 
+// Half a circle of 10 m radius, from (10, 0) over (0, 10) to (-10, 0), with its centre on the left.
+TEST(PathFrame, APointBeyondTheCentreOfAnOpenBendIsNotInside) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i <= 100; ++i) {
+    const double a = std::numbers::pi * i / 100.0;
+    points.emplace_back(10.0 * std::cos(a), 10.0 * std::sin(a), 0.0);
+  }
+  const PathFrame frame(PathCurve(fit_path(points, {.segments = 8}).path), {-3.0, 14.0});
+  for (const double y : {-1.0, -3.0}) {
+    EXPECT_EQ(frame.project({0.5, y}).status, ProjectionStatus::kNotUnique) << y;
+    PathCursor cursor;
+    ASSERT_TRUE(frame.project({0.0, 8.0}, cursor).inside());
+    EXPECT_EQ(frame.project({0.5, y}, cursor).status, ProjectionStatus::kNotUnique) << y;
+  }
+  // On this side of the centre, there is one foot.
+  const PathProjection near = frame.project({0.0, 2.0});
+  ASSERT_TRUE(near.inside());
+  EXPECT_NEAR(near.e_m, 8.0, 1e-3);
+}
+
 TEST(PathFrame, RoundTripHoldsOnRealTracks) {
   ROADBOOK_REQUIRE_DATA(folder, "racetracks_friction");
   for (const char* name : test::kTracks) {

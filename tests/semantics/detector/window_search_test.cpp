@@ -114,6 +114,39 @@ TEST(WindowSearch, FindsBoxesOfAnyHeadingFromAFewExamples) {
   EXPECT_LT(place / static_cast<double>(right), 0.15);
 }
 
+// The picture is cut so that its border touches the outline of a box, once at each side.
+TEST(WindowSearch, FindsABoxAtEachBorderOfThePicture) {
+  const OutlinedBoxes lot = outlined_boxes(40, 4);
+  const HogWindow window(5.0, 2.5);
+  const GpClassifier classifier = trained(lot, window, 8, 5);
+  GroundImage ground;
+  ground.grey = cv::Mat(160, 200, CV_8U);
+  Random random(3, "ground");
+  for (int row = 0; row < ground.grey.rows; ++row)
+    for (int column = 0; column < ground.grey.cols; ++column)
+      ground.grey.at<unsigned char>(row, column) =
+          cv::saturate_cast<unsigned char>(95.0 + 12.0 * random.normal());
+  ground.seen = cv::Mat(ground.grey.size(), CV_8U, cv::Scalar(255));
+  ground.corner = {0.0, 16.0};
+  ground.resolution_m = 0.1;
+  const double border = 1.45;  // half a width, and half the line
+  for (const auto& [centre, heading] :
+       {std::pair{Eigen::Vector2d(10.0, 16.0 - border), 0.0},
+        {Eigen::Vector2d(10.0, border), 0.0},
+        {Eigen::Vector2d(border, 8.0), std::numbers::pi / 2},
+        {Eigen::Vector2d(20.0 - border, 8.0), std::numbers::pi / 2}}) {
+    GroundImage image = ground;
+    image.grey = ground.grey.clone();
+    const OrientedBox box{centre, heading, 5.0, 2.5};
+    test::paint_outline(box, image);
+    WindowSearchOptions options;
+    options.hypotheses = 3;
+    const auto found = WindowSearch(image, window, options).run(classifier);
+    ASSERT_FALSE(found.empty()) << centre.transpose();
+    EXPECT_GT(intersection_over_union(found.front().box, box), 0.6) << centre.transpose();
+  }
+}
+
 TEST(WindowSearch, GivesTheSameHypothesesOnAnyNumberOfThreads) {
   const OutlinedBoxes lot = outlined_boxes(15, 6);
   const HogWindow window(5.0, 2.5);

@@ -67,6 +67,25 @@ TEST(Vehicle, StaysInItsLane) {
   }
 }
 
+TEST(Vehicle, StandsAsLongAsEachStopSays) {
+  Scenario scenario = small("zurich");
+  scenario.laps[0] = 1;
+  scenario.stops = {{.at_m = 12.0, .seconds = 2.0}, {.at_m = 25.0, .seconds = 5.0}};
+  const VehicleMotion motion = drive(scenario, Ground(scenario.ground));
+  std::vector<double> stands;
+  double since = 0.0;
+  for (const VehicleState& state : motion.states()) {
+    if (state.speed > 0.0) {
+      if (state.t_s - since > 0.1 && since > 1.0) stands.push_back(state.t_s - since);
+      since = state.t_s;
+    }
+  }
+  ASSERT_EQ(stands.size(), 2U);
+  // The last part of the braking, from a slow roll to rest, belongs to the stop.
+  EXPECT_NEAR(stands[0], 2.0, 0.3);
+  EXPECT_NEAR(stands[1], 5.0, 0.3);
+}
+
 TEST(Vehicle, WheelsIntegrateToTheTruthOnFlatGround) {
   Scenario scenario = small("zurich");
   scenario.ground.hinge.reset();
