@@ -5,8 +5,8 @@
 
 Draws mutants by seed, the same number for every module. Builds and tests them one at a time in
 FOLDER: a clone of this repository with its own build, made if it does not exist, and used again
-otherwise. For each mutant the tests of its module run first, then those of the other modules from
-the shortest on, until one fails or until the tests would need more than --test-seconds. A build
+otherwise. For each mutant the tests of its module and those that include its header run first, then
+the others from the shortest on, until one fails or until the tests would need more than --test-seconds. A build
 that fails is no mutant; another one is drawn. A test program that takes five times as
 long as usual (and two minutes) has noticed the mutant too.
 
@@ -118,10 +118,23 @@ def belongs_to(path, module):
     return path.split("/")[1] == module
 
 
-def programs_for(module, programs, seconds):
+def folders_that_include(copy, file):
+    """Folders of tests/ with a source that includes the header of the mutated file."""
+    header = '"' + file.rsplit(".", 1)[0] + '.hpp"'
+    return {path.relative_to(copy.folder / "tests").parts[0]
+            for path in (copy.folder / "tests").rglob("*.cpp") if header in path.read_text()}
+
+
+def programs_for(copy, mutant, programs, seconds):
     """Test programs in the order in which they run."""
-    return sorted(programs, key=lambda name: (not belongs_to(programs[name], module),
-                                              seconds[name], name))
+    folders = folders_that_include(copy, mutant.file)
+
+    def order(name):
+        path = programs[name]
+        near = belongs_to(path, mutant.module) or path.split("/")[1] in folders
+        return (not near, seconds[name], name)
+
+    return sorted(programs, key=order)
 
 
 def judge(copy, mutant, programs, seconds, limit, log):
@@ -133,7 +146,7 @@ def judge(copy, mutant, programs, seconds, limit, log):
     path.write_text(changed)
     try:
         spent = 0.0
-        for name in programs_for(mutant.module, programs, seconds):
+        for name in programs_for(copy, mutant, programs, seconds):
             if spent > 0.0 and spent + seconds[name] > limit:
                 continue
             if not copy.make([name], log):
