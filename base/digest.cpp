@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 
 namespace roadbook {
 
@@ -43,6 +44,7 @@ Sha256& Sha256::update(std::uint64_t number) {
 Sha256& Sha256::update(double number) { return update(std::bit_cast<std::uint64_t>(number)); }
 
 Sha256& Sha256::update_file(const std::filesystem::path& file) {
+  require_regular_file(file, "a file");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw StorageError("error: " + file.string() + ": got no readable file");
   std::vector<char> buffer(1u << 20);

@@ -1,8 +1,10 @@
 #include "base/yaml.hpp"
 
-#include <fstream>
+#include <cstdint>
 
 #include "base/text.hpp"
+#include "base/text_file.hpp"
+#include "base/utf8.hpp"
 #include "base/yaml_state.hpp"
 
 namespace roadbook {
@@ -22,11 +24,65 @@ std::string shown(const YAML::Node& node) {
 
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 64u << 20;  // far above any calibration or scenario
+constexpr std::uint64_t kMaxBytes = 64u << 20;  // far above any calibration or scenario
+
+[[noreturn]] void refuse_text(const std::string& name,
+                              std::int64_t line,
+                              const std::string& got,
+                              const std::string& want) {
+  throw BadInput({Severity::kError, name, line, "", got, want});
+}
+
+// "---" or "..." alone, or with a blank behind it.
+bool is_marker(std::string_view line, std::string_view marker) {
+  return line.starts_with(marker) &&
+         (line.size() == 3 || line[3] == ' ' || line[3] == '\t' || line[3] == '#');
+}
+
+void require_characters(std::string_view line, std::int64_t number, const std::string& name) {
+  if (!utf8_characters(line)) refuse_text(name, number, "bytes that are no UTF-8", "UTF-8 text");
+  for (const char c : line)
+    if ((c >= 0 && c < ' ' && c != '\t') || c == 0x7F)
+      refuse_text(name, number, "the control character " + std::to_string(static_cast<int>(c)),
+                  "text");
+}
+
+// The parser reads one document and drops what follows. So nothing may follow.
+class OneDocument {
+ public:
+  explicit OneDocument(const std::string& name) : name_(name) {}
+  void add(std::string_view line, std::int64_t number) {
+    require_characters(line, number, name_);
+    const std::string_view text = trim(line);
+    if (text.empty() || text.front() == '#') return;
+    if (ended_)
+      refuse_text(name_, number, "text behind the end of the document ('...')", "one document");
+    if (is_marker(line, "...")) {
+      ended_ = true;
+    } else if (is_marker(line, "---")) {
+      if (begun_) refuse_text(name_, number, "a second document ('---')", "one document");
+      begun_ = true;
+    } else if (line.front() != '%') {
+      begun_ = true;
+    } else if (begun_) {
+      refuse_text(name_, number, "a directive ('%') within the document",
+                  "directives before the document alone");
+    }
+  }
+
+ private:
+  const std::string& name_;
+  bool begun_ = false;
+  bool ended_ = false;
+};
 
 YAML::Node parse_text(const std::string& text, const std::string& name) {
+  require_one_yaml_document(text, name);
   try {
-    return YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1)
+      refuse_text(name, line_of(documents[1]), "a second document", "one document");
+    return documents.empty() ? YAML::Node() : documents.front();
   } catch (const YAML::Exception& e) {
     throw BadInput(
         {Severity::kError, name, e.mark.line + 1, "", "invalid YAML (" + e.msg + ")", "YAML"});
@@ -34,6 +90,21 @@ YAML::Node parse_text(const std::string& text, const std::string& name) {
 }
 
 }  // namespace
+
+void require_one_yaml_document(std::string_view text, const std::string& name) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") ||
+      text.starts_with(std::string_view("\0\0\xFE\xFF", 4)))
+    refuse_text(name, 1, "UTF-16 or UTF-32 text", "UTF-8 text");
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  OneDocument document(name);
+  std::int64_t number = 0;
+  while (!text.empty()) {
+    const auto end = text.find_first_of("\r\n");
+    document.add(text.substr(0, end), ++number);
+    if (end == std::string_view::npos) return;
+    text.remove_prefix(end + (text.substr(end).starts_with("\r\n") ? 2 : 1));
+  }
+}
 
 void YamlMap::State::fill(const YAML::Node& node) {
   line = line_of(node);
@@ -51,17 +122,7 @@ void YamlMap::State::fill(const YAML::Node& node) {
 }
 
 YamlMap YamlMap::load(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);
-  if (error) throw BadInput({Severity::kError, file.string(), 0, "", "no readable file", "YAML"});
-  if (size > kMaxBytes)
-    throw BadInput({Severity::kError, file.string(), 0, "size", std::to_string(size) + " bytes",
-                    "at most " + std::to_string(kMaxBytes)});
-  std::ifstream in(file, std::ios::binary);
-  std::string text(size, '\0');
-  if (!in.read(text.data(), static_cast<std::streamsize>(size)))
-    throw BadInput({Severity::kError, file.string(), 0, "", "no readable file", "YAML"});
-  return parse(text, file.string());
+  return parse(read_regular_file(file, "YAML", kMaxBytes), file.string());
 }
 
 YamlMap YamlMap::parse(const std::string& text, const std::string& name) {

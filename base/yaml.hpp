@@ -35,8 +35,9 @@ struct Range {
 /// One mapping of a YAML file. Copies share their state; not for concurrent use.
 class YamlMap {
  public:
-  /// Throws BadInput for a file that cannot be read, is not YAML or is not a mapping. An empty file
-  /// is an empty mapping. OpenCV's `%YAML:1.0` first line and `!!opencv-matrix` tags are accepted.
+  /// Throws BadInput for a file that cannot be read, is no regular file, is not UTF-8 or not YAML,
+  /// is not a mapping, or goes on behind its one document. An empty file is an empty mapping.
+  /// OpenCV's `%YAML:1.0` first line and `!!opencv-matrix` tags are accepted.
   static YamlMap load(const std::filesystem::path& file);
   /// The same from text; messages give `name` as the file.
   static YamlMap parse(const std::string& text, const std::string& name);
@@ -100,5 +101,9 @@ class YamlMap {
   bool missing(std::string_view key);
   std::shared_ptr<State> state_;
 };
+
+/// Throws BadInput, naming the line, for a text that is not UTF-8, holds control characters or goes
+/// on behind one YAML document: the parser would drop the rest.
+void require_one_yaml_document(std::string_view text, const std::string& name);
 
 }  // namespace roadbook

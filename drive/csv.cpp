@@ -34,10 +34,7 @@ void split_into(std::string_view line, std::vector<std::string_view>& fields) {
 
 }  // namespace
 
-LineReader::LineReader(const std::filesystem::path& file) : buffer_(2 * kMaxLine) {
-  std::error_code error;
-  if (std::filesystem::is_regular_file(file, error)) file_.reset(std::fopen(file.c_str(), "rb"));
-}
+LineReader::LineReader(const std::filesystem::path& file) : file_(file), buffer_(2 * kMaxLine) {}
 
 bool LineReader::refill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
@@ -75,7 +72,7 @@ CsvReader::CsvReader(const std::filesystem::path& file, CsvHeader header, Proble
       by_position_(header == CsvHeader::kIgnored) {
   if (!lines_.is_open()) {
     good_ = false;
-    problems_.error(name_, 0, "", "no readable file", "a table");
+    problems_.error(name_, 0, "", lines_.fault(), "a table");
   } else if (!by_position_) {
     read_header();
   }

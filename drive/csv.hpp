@@ -1,14 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/text_file.hpp"
 #include "drive/problem_list.hpp"
 
 namespace roadbook {
@@ -18,7 +17,9 @@ namespace roadbook {
 class LineReader {
  public:
   explicit LineReader(const std::filesystem::path& file);
-  [[nodiscard]] bool is_open() const { return file_ != nullptr; }
+  [[nodiscard]] bool is_open() const { return static_cast<bool>(file_); }
+  /// Why the file is not open: "no readable file", "a pipe", ...
+  [[nodiscard]] const std::string& fault() const { return file_.fault(); }
   /// The next line, valid until the next call; empty at the end.
   std::optional<std::string_view> next();
   [[nodiscard]] std::int64_t line() const { return line_; }
@@ -26,10 +27,7 @@ class LineReader {
 
  private:
   bool refill();
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::unique_ptr<std::FILE, Close> file_;
+  RegularFile file_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;

@@ -83,13 +83,17 @@ std::int64_t Drive::frame_stamp_ns(std::size_t frame) const {
   return impl_->content.frames.stamps_ns.at(frame);
 }
 
+std::int64_t Drive::image_stamp_ns(std::size_t frame, std::size_t camera) const {
+  return impl_->content.frames.image_stamp_ns(frame, camera);
+}
+
 bool Drive::has_image(std::size_t frame, std::size_t camera) const {
   return (impl_->content.frames.cameras.at(frame) >> camera & 1u) != 0;
 }
 
 fs::path Drive::image_path(std::size_t frame, std::size_t camera) const {
   const ImageStream& stream = impl_->content.images.at(camera);
-  return stream.folder / stream.names.at(frame_stamp_ns(frame));
+  return stream.folder / stream.names.at(image_stamp_ns(frame, camera));
 }
 
 std::optional<std::filesystem::path> Drive::mask_path(std::size_t camera) const {
@@ -110,7 +114,7 @@ cv::Mat Drive::read_segmentation(std::size_t frame, std::size_t camera) const {
   const auto found = impl_->content.segmentations.find(camera);
   if (found == impl_->content.segmentations.end()) return {};
   const ImageStream& stream = found->second;
-  const std::int64_t t_ns = frame_stamp_ns(frame);
+  const std::int64_t t_ns = image_stamp_ns(frame, camera);
   if (!std::binary_search(stream.stamps_ns.begin(), stream.stamps_ns.end(), t_ns)) return {};
   return impl_->decode(stream.folder / stream.names.at(t_ns), camera);
 }

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <utility>
 
 #include "base/text.hpp"
 #include "drive/camchain.hpp"
+#include "drive/checks/camera_places.hpp"
+#include "drive/checks/frozen_images.hpp"
+#include "drive/checks/gyro_check.hpp"
+#include "drive/checks/stamp_spans.hpp"
+#include "drive/detections.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "drive/tables.hpp"
 #include "drive/vehicle_yaml.hpp"
@@ -43,30 +48,6 @@ std::vector<fs::path> numbered_folders(const fs::path& folder, const std::string
   return folders;
 }
 
-// First and last stamp of a stream.
-struct Span {
-  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
-  std::int64_t last_ns = -1;
-
-  void add(std::int64_t t_ns) {
-    first_ns = std::min(first_ns, t_ns);
-    last_ns = std::max(last_ns, t_ns);
-  }
-  [[nodiscard]] bool known() const { return first_ns <= last_ns; }
-  [[nodiscard]] bool meets(const Span& other) const {
-    return first_ns <= other.last_ns && other.first_ns <= last_ns;
-  }
-  /// But for what sensors take to start and stop.
-  [[nodiscard]] bool covers(const Span& other) const {
-    constexpr std::int64_t kSlackNs = 1'000'000'000;
-    return first_ns - other.first_ns <= kSlackNs && other.last_ns - last_ns <= kSlackNs;
-  }
-};
-
-std::string to_text(const Span& span) {
-  return std::to_string(span.first_ns) + " to " + std::to_string(span.last_ns) + " ns";
-}
-
 class Loader {
  public:
   Loader(DriveContent& content, const DriveOptions& options, ProblemList& problems)
@@ -82,11 +63,15 @@ class Loader {
     if (content_.streams.empty() && content_.rig.cameras.empty() && !problems_.has_errors())
       problems_.error(content_.folder.string(), 0, "", "no sensor folder",
                       "cam0, wheels0 or another stream");
-    content_.frames = index_frames(content_.images);
+    content_.frames = index_frames(content_.images, options_.stamp_tolerance_s);
     warn_of_ended_cameras(content_.images, content_.frames, problems_);
+    warn_of_unpaired_cameras(content_.images, options_.stamp_tolerance_s, problems_);
+    warn_of_frozen_images(
+        content_.images, [&](auto first, auto last) { return trace_.way_m(first, last); },
+        problems_);
     // The frame index holds the stamps now; assigning {} would keep the memory.
     for (ImageStream& stream : content_.images) std::vector<std::int64_t>().swap(stream.stamps_ns);
-    check_spans();
+    check_spans(content_.sensors, content_.frames.stamps_ns, wheel_span_, truth_span_, problems_);
   }
 
  private:
@@ -165,30 +150,36 @@ class Loader {
     limits.declared_rate_hz = file ? file->info.rate_hz : 0.0;
     const WheelModel model = file ? file->wheels : WheelModel{};
     const auto offset_ns = static_cast<std::int64_t>(std::llround(model.time_offset_s * 1e9));
-    content_.streams.push_back(
-        read_wheel_table(folder / "data.csv", model, limits, problems_,
-                         [&](const WheelReading& row) { wheel_span_.add(row.t_ns + offset_ns); }));
+    content_.streams.push_back(read_wheel_table(folder / "data.csv", model, limits, problems_,
+                                                [&](const WheelReading& row) {
+                                                  wheel_span_.add(row.t_ns + offset_ns);
+                                                  trace_.add(row.t_ns + offset_ns, row, model);
+                                                }));
     content_.wheels = model;
     remember(folder);
   }
 
   void load_vehicle_measures() {
-    const auto file = beside_sensors(kVehicleFile);
-    if (!file) return;
-    const bool sound = !problems_.has_errors();
-    content_.vehicle = read_vehicle_yaml(*file, problems_);
     // A sensor.yaml with faults may put a camera anywhere.
-    if (content_.vehicle && sound)
-      warn_of_vehicle(*file, *content_.vehicle, content_.rig, content_.wheels, problems_);
+    const bool sound = !problems_.has_errors();
+    if (const auto file = beside_sensors(kVehicleFile)) {
+      content_.vehicle = read_vehicle_yaml(*file, problems_);
+      if (content_.vehicle && sound)
+        warn_of_vehicle(*file, content_.sensors, *content_.vehicle, content_.rig, content_.wheels,
+                        problems_);
+    }
+    if (sound)
+      warn_of_camera_places(content_.sensors, content_.rig, content_.wheels, content_.vehicle,
+                            problems_);
   }
 
   // What the stream's sensor.yaml says, where it has one; empty where the drive has no such stream.
   template <typename Row>
-  std::optional<StreamFile> load_stream(const std::string& name,
-                                        StreamSummary (*read)(const fs::path&,
-                                                              const StampLimits&,
-                                                              ProblemList&,
-                                                              const RowVisitor<Row>&)) {
+  std::optional<StreamFile> load_stream(
+      const std::string& name,
+      StreamSummary (*read)(
+          const fs::path&, const StampLimits&, ProblemList&, const RowVisitor<Row>&),
+      const std::function<void(const StreamFile&, const Row&)>& visit = nullptr) {
     const fs::path folder = content_.sensors / name;
     if (!is_folder(folder)) return std::nullopt;
     StreamFile stated;
@@ -197,13 +188,21 @@ class Loader {
         stated = *std::move(file);
     StampLimits limits;
     limits.declared_rate_hz = stated.info.rate_hz;
-    content_.streams.push_back(read(folder / "data.csv", limits, problems_, [](const Row&) {}));
+    content_.streams.push_back(read(folder / "data.csv", limits, problems_, [&](const Row& row) {
+      if (visit) visit(stated, row);
+    }));
     remember(folder);
     return stated;
   }
 
   void load_other_streams() {
-    content_.imu = load_stream<ImuReading>("imu0", &read_imu_table);
+    GyroCheck gyro(trace_);
+    content_.imu = load_stream<ImuReading>(
+        "imu0", &read_imu_table, [&](const StreamFile& imu, const ImuReading& row) {
+          gyro.add(row.t_ns + offset_ns(imu.time_offset_s),
+                   imu.T_vehicle_sensor.linear().row(2).dot(row.angular_velocity_rad_s));
+        });
+    gyro.report((content_.sensors / "imu0" / "data.csv").string(), problems_);
     if (const auto range = load_stream<RangeReading>("range0", &read_range_table)) {
       content_.has_range = true;
       content_.range = range->range;
@@ -223,10 +222,25 @@ class Loader {
     remember(truth);
   }
 
-  // Its table is read where it is used (detections.hpp); the digest covers it.
+  // Detections may stand in any order of time.
+  template <typename Read>
+  void load_detector_table(const fs::path& file, const std::string& name, const Read& read) {
+    if (!fs::exists(file)) return;
+    try {
+      std::vector<std::int64_t> stamps;
+      for (const auto& row : read(file)) stamps.push_back(row.t_ns);
+      content_.streams.push_back(summary_in_any_order(name, std::move(stamps)));
+    } catch (const BadInput& bad) {
+      problems_.add_all(bad.problems());
+    }
+  }
+
   void load_detector() {
-    const fs::path yaml = content_.sensors / "detector0" / "sensor.yaml";
-    remember(yaml.parent_path());
+    const fs::path folder = content_.sensors / "detector0";
+    const fs::path yaml = folder / "sensor.yaml";
+    remember(folder);
+    load_detector_table(folder / "data.csv", "detector0", &read_detections);
+    load_detector_table(folder / "looks.csv", "detector0 looks", &read_looks);
     const auto file = fs::exists(yaml) ? read_stream_yaml(yaml, problems_) : std::nullopt;
     if (file && (file->time_offset_s != 0.0 ||
                  !file->T_vehicle_sensor.isApprox(Eigen::Isometry3d::Identity())))
@@ -234,28 +248,12 @@ class Loader {
                       "none: detections lie in a camera's images and carry their stamps");
   }
 
-  // Wheels of another clock or unit would give wrong results without any message. Wheels that cover
-  // the images in part, or a truth that does not overlap them, deserve a warning.
-  void check_spans() {
-    const auto& frames = content_.frames.stamps_ns;
-    if (frames.empty() || problems_.has_errors()) return;
-    const Span images{frames.front(), frames.back()};
-    const std::string wheels = (content_.sensors / "wheels0" / "data.csv").string();
-    const std::string want = "the time of the images, " + to_text(images);
-    if (wheel_span_.known() && !wheel_span_.meets(images))
-      problems_.error(wheels, 0, "timestamp", to_text(wheel_span_), want);
-    else if (wheel_span_.known() && !wheel_span_.covers(images))
-      problems_.warning(wheels, 0, "timestamp", to_text(wheel_span_), want);
-    if (truth_span_.known() && !truth_span_.meets(images))
-      problems_.warning((content_.sensors / "state_groundtruth_estimate0" / "data.csv").string(), 0,
-                        "timestamp", to_text(truth_span_), want);
-  }
-
   DriveContent& content_;
   const DriveOptions& options_;
   ProblemList& problems_;
-  Span wheel_span_;
-  Span truth_span_;
+  StampSpan wheel_span_;
+  StampSpan truth_span_;
+  WheelTrace trace_;
 };
 
 }  // namespace

@@ -84,6 +84,32 @@ std::string pair_text(double a, double b) {
   return "(" + shown_value(a) + ", " + shown_value(b) + ")";
 }
 
+// A pinhole's view is below 180 degrees whatever its focal length; a fisheye's grows with the
+// angle.
+void check_focal_lengths(const std::string& file,
+                         const Camera& lens,
+                         const LensShape& shape,
+                         ProblemList& problems) {
+  const bool fisheye = lens.model != CameraModel::kPinholeRadtan;
+  const double longer = std::max(lens.width, lens.height);
+  const double shorter = std::min(lens.width, lens.height);
+  const double wide = std::max(shape.fx, shape.fy) / longer;
+  const double narrow = std::min(shape.fx, shape.fy) / shorter;
+  const double ratio = shape.fx / shape.fy;
+  // Pinhole: 11 to 136 degrees over the longer side; fisheye: up to 280 over the shorter one.
+  const bool likely = wide <= 5.0 && (fisheye ? narrow >= 0.2 : wide >= 0.2);
+  if (likely && ratio >= 0.8 && ratio <= 1.25) return;
+  const double half = 0.5 / std::max(wide, 1e-9);
+  const double view_deg =
+      360.0 / std::numbers::pi * (fisheye ? std::min(half, std::numbers::pi) : std::atan(half));
+  problems.warning(file, 0, "intrinsics",
+                   "focal lengths " + pair_text(shape.fx, shape.fy) + " for images of " +
+                       std::to_string(lens.width) + "x" + std::to_string(lens.height) +
+                       " (a view of " + shown_value(std::round(view_deg)) + " degrees)",
+                   fisheye ? "alike, 0.2 times the shorter side to 5 times the longer one"
+                           : "alike, 0.2 to 5 times the longer side");
+}
+
 // Size of the images that the calibration is of, in units of those that are there: from a principal
 // point that lies in the middle of them, by both sides alike. 0: no such size.
 double calibrated_scale(const LensShape& shape, const Camera& lens) {
@@ -146,7 +172,7 @@ void check_camera_sizes(const std::string& file,
                         const MountedCamera& camera,
                         ProblemList& problems) {
   constexpr double kMostOff = 0.2;  // of the principal point from the middle, in image sides
-  constexpr double kFarthestCamera_m = 20.0;
+  constexpr double kFarthestCamera_m = 12.0;  // the front of a bus, from its rear axle
   const Camera& lens = camera.camera;
   const LensShape shape = shape_of(lens);
   const std::string size = std::to_string(lens.width) + "x" + std::to_string(lens.height);
@@ -163,12 +189,7 @@ void check_camera_sizes(const std::string& file,
                      "a point near " + pair_text(0.5 * lens.width, 0.5 * lens.height) +
                          ", or the resolution that was calibrated");
   }
-  const double wide = std::max(shape.fx, shape.fy) / std::max(lens.width, lens.height);
-  const double ratio = shape.fx / shape.fy;
-  if (!(wide >= 0.1 && wide <= 10.0) || !(ratio >= 0.5 && ratio <= 2.0))
-    problems.warning(file, 0, "intrinsics",
-                     "focal lengths " + pair_text(shape.fx, shape.fy) + " for images of " + size,
-                     "alike, and 0.1 to 10 times the longer side");
+  check_focal_lengths(file, lens, shape, problems);
   const double far_m = camera.T_vehicle_camera.translation().norm();
   if (far_m > kFarthestCamera_m)
     problems.warning(file, 0, "T_BS",

@@ -46,6 +46,9 @@ inline constexpr double kMostSteering_rad = 1.2;
 /// Turn rate of a vehicle [rad/s]: 570 degrees a second.
 inline constexpr double kMostTurnRate_rad_s = 10.0;
 
+/// Specific force of an IMU on a vehicle [m/s^2]: blows saturate the usual ones at 16 g.
+inline constexpr double kMostForce_m_s2 = 500.0;
+
 /// Checks the mean length of specific forces, which include gravity. For another mean than gravity,
 /// adds a warning with the unit, or the missing gravity, that would explain it.
 void check_mean_force(const std::string& file, double mean_m_s2, ProblemList& problems);

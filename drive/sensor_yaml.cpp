@@ -12,6 +12,8 @@ namespace {
 
 constexpr Range kPositive{1e-12, 1e12};
 constexpr Range kNotNegative{0.0, 1e12};
+constexpr Range kNoise{0.0, 100.0};  // of a metre driven, or of an angle
+constexpr Range kRate_hz{0.0, 1e6};
 
 std::optional<YamlMap> load(const std::filesystem::path& file, ProblemList& problems) {
   try {
@@ -24,7 +26,7 @@ std::optional<YamlMap> load(const std::filesystem::path& file, ProblemList& prob
 
 void read_info(YamlMap& yaml, SensorInfo& info) {
   yaml.read("comment", info.comment);
-  yaml.read("rate_hz", info.rate_hz, kNotNegative);
+  yaml.read("rate_hz", info.rate_hz, kRate_hz);
 }
 
 void read_type(YamlMap& yaml, const std::string& want) {
@@ -85,10 +87,10 @@ std::optional<WheelFile> read_wheel_yaml(const std::filesystem::path& file, Prob
   yaml->read("steering_ratio", wheels.steering_ratio, kPositive);
   yaml->read("ticks_per_turn", wheels.ticks_per_turn, kNotNegative);
   yaml->read("time_offset", wheels.time_offset_s, {-10.0, 10.0});
-  yaml->read("sigma_distance_per_sqrt_m", wheels.sigma_distance_per_sqrt_m, kNotNegative);
-  yaml->read("sigma_heading_per_sqrt_m", wheels.sigma_heading_per_sqrt_m, kNotNegative);
-  yaml->read("sigma_lateral_per_sqrt_m", wheels.sigma_lateral_per_sqrt_m, kNotNegative);
-  yaml->read("sigma_angle", wheels.sigma_angle_rad, kNotNegative);
+  yaml->read("sigma_distance_per_sqrt_m", wheels.sigma_distance_per_sqrt_m, kNoise);
+  yaml->read("sigma_heading_per_sqrt_m", wheels.sigma_heading_per_sqrt_m, kNoise);
+  yaml->read("sigma_lateral_per_sqrt_m", wheels.sigma_lateral_per_sqrt_m, kNoise);
+  yaml->read("sigma_angle", wheels.sigma_angle_rad, kNoise);
   if (!close_yaml(*yaml, problems)) return std::nullopt;
   const std::size_t errors = problems.error_count();
   check_wheel_sizes(file.string(), wheels, problems);
@@ -110,8 +112,8 @@ std::optional<StreamFile> read_stream_yaml(const std::filesystem::path& file,
   if (yaml->has("beam_azimuths")) {
     RangeModel& range = result.range.emplace();
     yaml->read("beam_azimuths", range.azimuth_rad);
-    yaml->read("max_range", range.max_m, kPositive);
-    yaml->read("sigma", range.sigma_m, kPositive);
+    yaml->read("max_range", range.max_m, {1e-3, 1e5});
+    yaml->read("sigma", range.sigma_m, {1e-12, 1e3});
     range.T_vehicle_sensor = result.T_vehicle_sensor;
     range.time_offset_s = result.time_offset_s;
   }

@@ -26,20 +26,36 @@ StampCheck::StampCheck(std::string file, ProblemList& problems)
     : file_(std::move(file)), problems_(problems) {}
 
 bool StampCheck::add(std::int64_t t_ns, std::int64_t line) {
-  if (!stamps_.empty() && t_ns <= stamps_.back()) {
-    const bool same = t_ns == stamps_.back();
-    problems_.error(file_, line, "timestamp",
-                    std::to_string(t_ns) + (same ? " again" : " (goes back)"),
+  if (!stamps_.empty() && t_ns == stamps_.back()) {
+    problems_.error(file_, line, "timestamp", std::to_string(t_ns) + " again",
                     "more than " + std::to_string(stamps_.back()) + " of line " +
                         std::to_string(lines_.back()));
     return false;
   }
+  if (!stamps_.empty() && t_ns < stamps_.back()) {
+    if (step_.rows == 0) step_ = {file_, line, line, stamps_.back(), t_ns, 0};
+    ++step_.rows;
+    step_.last_line = line;
+    return false;
+  }
+  close_step();
   stamps_.push_back(t_ns);
   lines_.push_back(line);
   return true;
 }
 
+void StampCheck::close_step() {
+  if (step_.rows == 1)
+    problems_.error(file_, step_.line, "timestamp", std::to_string(step_.after_ns) + " (goes back)",
+                    "more than " + std::to_string(step_.before_ns) + " of line " +
+                        std::to_string(lines_.back()));
+  else if (step_.rows > 1)
+    problems_.add_step(step_);
+  step_.rows = 0;
+}
+
 StreamSummary StampCheck::finish(const std::string& stream, const StampLimits& limits) {
+  close_step();
   StreamSummary summary;
   summary.name = stream;
   summary.rows = stamps_.size();
@@ -75,6 +91,21 @@ StreamSummary StampCheck::finish(const std::string& stream, const StampLimits& l
     problems_.warning(file_, lines_[i + 1], "timestamp", got.str(),
                       "about " + std::to_string(std::int64_t(median_ns / 1e3)) + " us");
   }
+  return summary;
+}
+
+StreamSummary summary_in_any_order(const std::string& stream, std::vector<std::int64_t> stamps) {
+  StreamSummary summary;
+  summary.name = stream;
+  summary.rows = stamps.size();
+  std::sort(stamps.begin(), stamps.end());
+  stamps.erase(std::unique(stamps.begin(), stamps.end()), stamps.end());
+  std::vector<std::int64_t> intervals;
+  for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(stamps[i] - stamps[i - 1]);
+  if (intervals.empty()) return summary;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  summary.rate_hz = 1e9 / static_cast<double>(*middle);
   return summary;
 }
 

@@ -21,7 +21,8 @@ struct StampLimits {
 class StampCheck {
  public:
   StampCheck(std::string file, ProblemList& problems);
-  /// False (and an error) where the stamp repeats or goes back; such a row is to be skipped.
+  /// False (and an error) where the stamp repeats or goes back; such a row is to be skipped. Rows
+  /// after a clock has gone back are one error, up to the first one later than all before.
   bool add(std::int64_t t_ns, std::int64_t line);
   /// Reports gaps as warnings and an absurd rate as error; call once, after the last row.
   StreamSummary finish(const std::string& stream, const StampLimits& limits);
@@ -29,8 +30,15 @@ class StampCheck {
  private:
   std::string file_;
   ProblemList& problems_;
+  void close_step();
+  ClockStep step_;  ///< rows that are not later than those before; rows 0: none
   std::vector<std::int64_t> stamps_;
   std::vector<std::int64_t> lines_;
 };
+
+/// Rows and median rate of stamps in any order, several of which may be the same; gaps are not
+/// counted.
+[[nodiscard]] StreamSummary summary_in_any_order(const std::string& stream,
+                                                 std::vector<std::int64_t> stamps);
 
 }  // namespace roadbook

@@ -1,5 +1,6 @@
 #include "drive/tables.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -30,6 +31,12 @@ bool read_numbers(CsvReader& csv,
   return good;
 }
 
+std::string shown(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 StreamSummary close_table(CsvReader& csv,
                           StampCheck& stamps,
                           const std::string& stream,
@@ -54,7 +61,39 @@ bool read_surface(CsvReader& csv,
   return true;
 }
 
-// Warns where most poses are farther apart than any vehicle drives: then they are not in metres.
+// Single rows with forces beyond any IMU's are damaged; else the mean tells the unit.
+class ForceCheck {
+ public:
+  void add(double force_m_s2, std::int64_t line) {
+    rare_.add(force_m_s2, line);
+    if (force_m_s2 > kMostForce_m_s2)
+      ++beyond_;
+    else
+      good_sum_ += force_m_s2;
+    sum_ += force_m_s2;
+    ++rows_;
+  }
+  void report(const std::string& file, ProblemList& problems) const {
+    if (rows_ == 0) return;
+    const bool few = 20 * beyond_ <= rows_;
+    if (few) rare_.report(file, problems, "");
+    check_mean_force(
+        file,
+        few ? good_sum_ / static_cast<double>(rows_ - beyond_) : sum_ / static_cast<double>(rows_),
+        problems);
+  }
+
+ private:
+  ColumnBound rare_{"a_RS_S_x, _y, _z", kMostForce_m_s2,
+                    "at most 500 m/s^2, as an IMU on a vehicle feels"};
+  double sum_ = 0.0;
+  double good_sum_ = 0.0;
+  std::size_t rows_ = 0;
+  std::size_t beyond_ = 0;
+};
+
+// Warns of poses that are farther apart than any vehicle drives. Where most are, they are not in
+// metres; a single one is a jump of the reference.
 class PoseSpeedCheck {
  public:
   void add(const TimedPose& pose, std::int64_t line) {
@@ -64,22 +103,25 @@ class PoseSpeedCheck {
     const double way_m =
         (pose.T_world_vehicle.translation() - before->T_world_vehicle.translation()).norm();
     ++rows_;
-    if (way_m <= kFastest_m_s * dt_s || ++beyond_ > 1) return;
+    if (way_m <= kFastest_m_s * dt_s + kCorrection_m || ++beyond_ > 1) return;
     std::ostringstream got;
     got << "a way of " << way_m << " m in " << dt_s << " s";
     first_ = got.str();
     first_line_ = line;
   }
   void report(const std::string& file, ProblemList& problems) const {
-    if (beyond_ < 3 || 2 * beyond_ < rows_) return;
+    if (beyond_ == 0) return;
+    const bool most = beyond_ >= 3 && 2 * beyond_ >= rows_;
     problems.warning(file, first_line_, "position",
-                     first_ + ", and the like in " + std::to_string(beyond_) + " of " +
-                         std::to_string(rows_) + " rows",
-                     "less than 100 m/s (metres?)");
+                     first_ + (beyond_ == 1 ? ""
+                                            : ", and the like in " + std::to_string(beyond_) +
+                                                  " of " + std::to_string(rows_) + " rows"),
+                     most ? "less than 100 m/s (metres?)" : "less than 100 m/s");
   }
 
  private:
   static constexpr double kFastest_m_s = 100.0;
+  static constexpr double kCorrection_m = 5.0;  ///< of a reference that finds its place again
   std::optional<TimedPose> before_;
   std::size_t rows_ = 0;
   std::size_t beyond_ = 0;
@@ -95,6 +137,7 @@ StreamSummary read_truth_table(const std::filesystem::path& file,
   // A quaternion printed with a few digits is off by 1e-3 at most; farther off it is something
   // else.
   constexpr double kNormTolerance = 1e-2;
+  constexpr double kFarthest_m = 1e8;
   PoseSpeedCheck speeds;
   CsvReader csv(file, CsvHeader::kIgnored, problems);
   StampCheck stamps(file.string(), problems);
@@ -120,6 +163,12 @@ StreamSummary read_truth_table(const std::filesystem::path& file,
     if (!(std::abs(q.norm() - 1.0) <= kNormTolerance)) {
       problems.error(csv.file(), csv.line(), "quaternion", "length " + std::to_string(q.norm()),
                      "1 (w first)");
+      continue;
+    }
+    const double farthest = std::max({std::abs(v[1]), std::abs(v[2]), std::abs(v[3])});
+    if (!(farthest <= kFarthest_m)) {
+      problems.error(csv.file(), csv.line(), "position", shown(farthest) + " m",
+                     "metres, at most 1e8 (earth-centred ones are below 1e7)");
       continue;
     }
     if (!stamps.add(*t, csv.line())) continue;
@@ -150,19 +199,17 @@ StreamSummary read_imu_table(const std::filesystem::path& file,
         csv.require("a_RS_S_y", kForce), csv.require("a_RS_S_z", kForce)};
     ColumnBound rate("w_RS_S_x, _y, _z", kMostTurnRate_rad_s,
                      "at most 10 rad/s, as a vehicle turns");
-    double force_sum = 0.0;
-    std::size_t rows = 0;
+    ForceCheck force;
     while (csv.next()) {
       std::array<double, 6> v{};
       const auto t = csv.stamp(*t_column);
       if (!read_numbers(csv, columns, v) || !t || !stamps.add(*t, csv.line())) continue;
       visit({*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
       rate.add(std::hypot(v[0], v[1], v[2]), csv.line());
-      force_sum += std::hypot(v[3], v[4], v[5]);
-      ++rows;
+      force.add(std::hypot(v[3], v[4], v[5]), csv.line());
     }
     rate.report(csv.file(), problems, degrees_cause(rate.largest(), kMostTurnRate_rad_s));
-    if (rows > 0) check_mean_force(csv.file(), force_sum / static_cast<double>(rows), problems);
+    force.report(csv.file(), problems);
   }
   return close_table(csv, stamps, "imu0", limits, problems);
 }
@@ -181,6 +228,7 @@ StreamSummary read_friction_table(const std::filesystem::path& file,
     const auto temperature_column = csv.find("temperature");
     if (temperature_column) csv.require("temperature", "degC");
     ColumnBound coefficient("friction", 2.0, "a coefficient, at most 2");
+    ColumnBound spread("sigma", 1000.0, "of a coefficient, at most 1000");
     ColumnBound warmth("temperature", 100.0, "degrees Celsius, at most 100");
     while (csv.next()) {
       std::array<double, 2> v{};
@@ -199,11 +247,13 @@ StreamSummary read_friction_table(const std::filesystem::path& file,
       reading.t_ns = *t;
       reading.friction = v[0];
       coefficient.add(v[0], csv.line());
+      spread.add(v[1], csv.line());
       if (reading.temperature_c) warmth.add(*reading.temperature_c, csv.line());
       reading.sigma = v[1];
       if (stamps.add(*t, csv.line())) visit(reading);
     }
     coefficient.report(csv.file(), problems, coefficient.largest() <= 100.0 ? "per cent?" : "");
+    spread.report(csv.file(), problems, "");
     warmth.report(csv.file(), problems, warmth.largest() < 400.0 ? "kelvins?" : "");
   }
   return close_table(csv, stamps, "friction0", limits, problems);
@@ -221,6 +271,7 @@ StreamSummary read_range_table(const std::filesystem::path& file,
     const auto t_column = csv.require("timestamp", "ns|");
     const auto beam_column = csv.require("beam", "|-");
     const auto range_column = csv.require("range", "m");
+    ColumnBound distance("range", 1000.0, "at most 1000 m");
     while (csv.next()) {
       const auto t = csv.stamp(*t_column);
       const auto beam = parse_int(csv.fields()[*beam_column]);
@@ -231,10 +282,12 @@ StreamSummary read_range_table(const std::filesystem::path& file,
       if (!t || !range || !beam || *beam < 0) continue;
       const bool same_instant = *t == last_t && *beam > last_beam;
       if (!same_instant && !stamps.add(*t, csv.line())) continue;
+      distance.add(*range, csv.line());
       last_t = *t;
       last_beam = *beam;
       visit({*t, *beam, *range});
     }
+    distance.report(csv.file(), problems, distance.largest() < 1e6 ? "millimetres?" : "");
   }
   return close_table(csv, stamps, "range0", limits, problems);
 }

@@ -91,6 +91,7 @@ std::string vehicle_yaml_text(const VehicleMeasures& vehicle) {
 }
 
 void warn_of_vehicle(const std::filesystem::path& file,
+                     const std::filesystem::path& sensors,
                      const VehicleMeasures& vehicle,
                      const Rig& rig,
                      const std::optional<WheelModel>& wheels,
@@ -110,7 +111,7 @@ void warn_of_vehicle(const std::filesystem::path& file,
     const Eigen::Vector2d at = mounted.T_vehicle_camera.translation().head<2>();
     const Eigen::AlignedBox2d outline(body->min().head<2>(), body->max().head<2>());
     if (outline.exteriorDistance(at) > kBesideM)
-      problems.warning((file.parent_path() / mounted.name / "sensor.yaml").string(), 0, "T_BS",
+      problems.warning((sensors / mounted.name / "sensor.yaml").string(), 0, "T_BS",
                        mounted.name + " at x " + decimal(at.x()) + ", y " + decimal(at.y()),
                        places_of(vehicle));
   }

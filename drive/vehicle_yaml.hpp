@@ -31,8 +31,10 @@ inline constexpr const char* kVehicleFile = "vehicle.yaml";
 [[nodiscard]] std::string vehicle_yaml_text(const VehicleMeasures& vehicle);
 
 /// Warns of valid but unlikely content: measures that give no body, a camera far outside the body,
-/// an axle that differs from the wheels' sensor.yaml.
+/// an axle that differs from the wheels' sensor.yaml. `sensors`: the folder of the cameras'
+/// folders.
 void warn_of_vehicle(const std::filesystem::path& file,
+                     const std::filesystem::path& sensors,
                      const VehicleMeasures& vehicle,
                      const Rig& rig,
                      const std::optional<WheelModel>& wheels,

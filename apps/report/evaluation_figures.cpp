@@ -14,7 +14,7 @@ std::vector<EvaluationFigure> evaluation_figures(const std::filesystem::path& fo
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
     const std::string extension = entry.path().extension().string();
-    if (extension != ".svg" && extension != ".png") continue;
+    if ((extension != ".svg" && extension != ".png") || !entry.is_regular_file(none)) continue;
     std::ifstream in(entry.path(), std::ios::binary);
     const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(in), {}};
     figures.push_back({entry.path().filename().string(),

@@ -1,4 +1,5 @@
 #include "diagnosis/logs/plain_matrix.hpp"
+#include "base/text_file.hpp"
 
 #include <libdeflate.h>
 
@@ -105,6 +106,7 @@ LogTable read_matrix_table(const std::filesystem::path& file,
                            ProblemList& problems) {
   LogTable table;
   table.file = file.string();
+  require_regular_file(file, "a MATLAB 5.0 file");
   std::ifstream stream(file, std::ios::binary);
   const MatBytes bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (bytes.size() < kHeader + 8 || std::memcmp(bytes.data(), "MATLAB 5.0", 10) != 0) {

@@ -10,6 +10,7 @@
 #include "base/digest.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "base/text_file.hpp"
 #include "drive/csv.hpp"
 #include "drive/images/image_files.hpp"
 #include "drive/images/image_header.hpp"
@@ -147,14 +148,49 @@ void warn_of_unnamed_images(const ImageStream& stream,
 }
 
 bool read_file(const std::filesystem::path& file, std::vector<std::uint8_t>& content) {
-  constexpr std::uintmax_t kLargest = 1u << 30;
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);
-  if (error || size > kLargest) return false;
-  content.resize(size);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"),
-                                                           &std::fclose);
-  return in && std::fread(content.data(), 1, content.size(), in.get()) == content.size();
+  constexpr std::uint64_t kLargest = 1u << 30;
+  const RegularFile in(file);
+  if (!in || in.size() > kLargest) return false;
+  content.resize(in.size());
+  return std::fread(content.data(), 1, content.size(), in.get()) == content.size();
+}
+
+// The same size and tail, and then the same bytes.
+bool same_content(const ImageStream& stream,
+                  const ImageRow& a,
+                  const ImageHeader& a_header,
+                  const ImageRow& b,
+                  const ImageHeader& b_header) {
+  if (a_header.bytes != b_header.bytes || a_header.tail != b_header.tail) return false;
+  std::vector<std::uint8_t> a_bytes;
+  std::vector<std::uint8_t> b_bytes;
+  return read_file(stream.folder / stream.names.at(a.t_ns), a_bytes) &&
+         read_file(stream.folder / stream.names.at(b.t_ns), b_bytes) && a_bytes == b_bytes;
+}
+
+// A camera that hangs writes one image again and again; even of a scene at rest the images of a
+// real camera differ by its noise.
+std::vector<RepeatedImages> find_repeats(const ImageStream& stream,
+                                         const std::vector<ImageRow>& rows,
+                                         const std::vector<ImageHeader>& headers) {
+  constexpr std::size_t kFewest = 5;
+  std::vector<RepeatedImages> repeats;
+  RepeatedImages run;
+  const auto close = [&] {
+    if (run.count >= kFewest) repeats.push_back(run);
+  };
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool again = i > 0 && headers[i].state == ImageState::kGood &&
+                       same_content(stream, rows[i - 1], headers[i - 1], rows[i], headers[i]);
+    if (!again) {
+      close();
+      run = {0, rows[i].t_ns, 0, rows[i].line};
+    }
+    ++run.count;
+    run.last_ns = rows[i].t_ns;
+  }
+  close();
+  return repeats;
 }
 
 }  // namespace
@@ -206,6 +242,7 @@ ImageStream load_image_stream(const std::filesystem::path& sensor_folder,
       stream.stamps_ns.push_back(rows[i].t_ns);
   }
   stream.digest = digest.hex();
+  stream.repeats = find_repeats(stream, rows, headers);
   other_sizes.report(table.string(), problems);
   if (!rows.empty()) warn_of_unnamed_images(stream, headers, problems);
   if (problems.error_count() == errors_before) warn_of_share(stream, rows.size(), problems);

@@ -35,13 +35,22 @@ struct ImageSize {
   int height = 0;
 };
 
+/// Images of one stream that follow each other and hold the same bytes.
+struct RepeatedImages {
+  std::size_t count = 0;  ///< the first one included
+  std::int64_t first_ns = 0;
+  std::int64_t last_ns = 0;
+  std::int64_t first_line = 0;  ///< of data.csv
+};
+
 /// One camera's (or segmentation's) images.
 struct ImageStream {
   std::filesystem::path folder;  ///< that holds the files
   ImageNames names;
   std::vector<std::int64_t> stamps_ns;  ///< of the images that are there and whole, ascending
   StreamSummary summary;
-  std::string digest;  ///< of stamps, names and file sizes
+  std::string digest;                   ///< of stamps, names and file sizes
+  std::vector<RepeatedImages> repeats;  ///< of five images and more
 };
 
 /// Reads `sensor_folder`/data.csv and looks at the head and tail of every image file. A table fault

@@ -5,6 +5,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "base/text.hpp"
+#include "base/text_file.hpp"
 #include "drive/csv.hpp"
 #include "drive/import/import_support.hpp"
 #include "drive/plausible.hpp"
@@ -66,6 +67,7 @@ std::size_t import_video_frames(const fs::path& file,
                                 const FrameStamps& stamps_ns,
                                 DriveWriter& writer,
                                 const Progress& progress) {
+  require_regular_file(file, "a video that FFmpeg decodes");
   cv::VideoCapture video;
   try {
     video.open(file.string(), cv::CAP_FFMPEG);

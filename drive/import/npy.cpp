@@ -3,12 +3,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 
 #include "base/text.hpp"
+#include "base/text_file.hpp"
 #include "drive/import/import_support.hpp"
 
 namespace roadbook {
@@ -55,14 +54,9 @@ void convert(std::string_view bytes, std::vector<double>& values) {
 
 NpyArray read_npy(const fs::path& file) {
   constexpr std::string_view kMagic = "\x93NUMPY";
-  std::error_code error;
-  const auto size = fs::file_size(file, error);
-  if (error || size > (1u << 30))
-    refuse(file, 0, "", "no readable file", "a .npy file up to 1 GiB");
-  std::string content(size, '\0');
-  std::ifstream in(file, std::ios::binary);
-  if (!in.read(content.data(), static_cast<std::streamsize>(size)) || size < 12 ||
-      !content.starts_with(kMagic))
+  const std::string content = read_regular_file(file, "a .npy file up to 1 GiB");
+  const std::size_t size = content.size();
+  if (size < 12 || !content.starts_with(kMagic))
     refuse(file, 0, "", "another kind of file", "a .npy file");
   const auto byte = [&](std::size_t i) {
     return std::size_t{static_cast<unsigned char>(content[i])};
@@ -78,7 +72,9 @@ NpyArray read_npy(const fs::path& file) {
   NpyArray array;
   array.shape = parse_shape(file, entry(file, header, "shape"));
   std::size_t count = 1;
-  for (const std::size_t n : array.shape) count *= n;
+  for (const std::size_t n : array.shape)
+    if (__builtin_mul_overflow(count, n, &count) || count > size)
+      refuse(file, 0, "shape", "more numbers than the file has bytes", "the numbers of the file");
   const std::string_view type = entry(file, header, "descr").substr(0, 5);
   const std::size_t width = type.size() == 5 && type[3] == '4' ? 4 : 8;
   const std::string_view bytes(content.data() + begin + length, size - begin - length);

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "base/text.hpp"
+#include "base/text_file.hpp"
 #include "base/whole_file.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/labels/label_check.hpp"
@@ -71,7 +71,7 @@ std::vector<std::filesystem::path> write_overhead_picture(const MapLayers& layer
 }
 
 PicturePlace read_world_file(const std::filesystem::path& file, int width, int height) {
-  std::ifstream in(file);
+  std::istringstream in(read_regular_file(file, "a world file"));
   std::vector<double> values;
   std::string line;
   while (values.size() < 6 && std::getline(in, line)) {

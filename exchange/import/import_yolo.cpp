@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
+#include <sstream>
 
 #include "base/text.hpp"
+#include "base/text_file.hpp"
 #include "base/yaml.hpp"
 #include "exchange/import/label_readers.hpp"
 #include "exchange/import/outline_shape.hpp"
@@ -51,7 +52,7 @@ std::vector<std::string> names_of_data(const std::filesystem::path& file) {
 
 // One name a line: how some programs write them in place of data.yaml.
 std::vector<std::string> names_of_list(const std::filesystem::path& file) {
-  std::ifstream in(file);
+  std::istringstream in(read_regular_file(file, "names of classes"));
   std::vector<std::string> names;
   for (std::string line; std::getline(in, line);) names.emplace_back(trim(line));
   while (!names.empty() && names.back().empty()) names.pop_back();
@@ -169,7 +170,7 @@ std::optional<LabelOutline> outline_of_row(const std::vector<std::string_view>& 
 std::optional<LabelsLeftOut> rows_of_others(const YoloFiles& files) {
   std::size_t rows = 0;
   for (const auto& file : files.other) {
-    std::ifstream in(file);
+    std::istringstream in(read_regular_file(file, "rows of labels"));
     for (std::string line; std::getline(in, line);) rows += words_of(line).empty() ? 0 : 1;
   }
   if (rows == 0) return std::nullopt;
@@ -187,8 +188,7 @@ LabelFile read_yolo(const std::filesystem::path& folder, const MapLayers& layers
   const auto names = read_names(folder);
   const YoloFiles files = yolo_files(folder);
   const std::string name = files.rows.string();
-  std::ifstream in(files.rows, std::ios::binary);
-  if (!in) throw BadInput({Severity::kError, name, 0, "", "no such file", "rows of labels"});
+  std::istringstream in(read_regular_file(files.rows, "rows of labels"));
   const PicturePlace place = yolo_picture_place(folder, layers);
   LabelFile result;
   std::vector<Problem> problems;

@@ -1,10 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <fstream>
-#include <sstream>
 #include <string_view>
 
+#include "base/text_file.hpp"
 #include "exchange/import/json_fields.hpp"
 
 namespace roadbook {
@@ -169,12 +168,8 @@ nlohmann::json read_json_file(const std::filesystem::path& file) {
   const auto refuse = [&](const char* got, const char* want) {
     throw BadInput({Severity::kError, file.string(), 0, "", got, want});
   };
-  if (std::filesystem::is_directory(file)) refuse("a folder", "a JSON file of labels");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) refuse("no such file", "labels");
-  std::ostringstream text;
-  text << in.rdbuf();
-  const std::string bytes = text.str();
+  if (!std::filesystem::exists(file)) refuse("no such file", "labels");
+  const std::string bytes = read_regular_file(file, "a JSON file of labels");
   if (is_utf16(bytes)) refuse("UTF-16 text", "JSON in UTF-8");
   JsonBuilder builder(bytes);
   if (!nlohmann::json::sax_parse(bytes, &builder)) throw BadInput(builder.problem(file.string()));

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 
+#include "base/text_file.hpp"
 #include "exchange/import/label_readers.hpp"
 
 namespace roadbook {
@@ -75,6 +76,7 @@ PicturePlace yolo_picture_place(const fs::path& folder, const MapLayers& layers)
     if (fs::exists(world)) return read_world_file(world, own.width, own.height);
     return own;
   }
+  require_regular_file(picture_file, "a PNG or JPEG");
   const cv::Mat picture = cv::imread(picture_file.string(), cv::IMREAD_GRAYSCALE);
   if (picture.empty())
     throw BadInput(

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 
 namespace roadbook {
 namespace {
@@ -112,6 +113,7 @@ std::string_view SqlStatement::bytes(int column) const {
 }
 
 SqlDatabase::SqlDatabase(std::filesystem::path file, SqlMode mode) : file_(std::move(file)) {
+  require_regular_file(file_, "a map file");
   const int flags = mode == SqlMode::kRead        ? SQLITE_OPEN_READONLY
                     : mode == SqlMode::kReadWrite ? SQLITE_OPEN_READWRITE
                                                   : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;

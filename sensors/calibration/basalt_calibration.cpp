@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 #include "base/yaml.hpp"
 #include "sensors/calibration/calibration_fields.hpp"
 #include "sensors/calibration/calibration_io.hpp"
@@ -21,24 +20,10 @@ namespace {
 constexpr std::size_t kMaxBytes = 64u << 20;
 constexpr double kUnitTolerance = 1e-3;
 
-std::string read_all(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);
-  if (error) throw BadInput({Severity::kError, file.string(), 0, "", "no readable file", "JSON"});
-  if (size > kMaxBytes)
-    throw BadInput({Severity::kError, file.string(), 0, "size", std::to_string(size) + " bytes",
-                    "at most " + std::to_string(kMaxBytes)});
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (in.bad())
-    throw BadInput({Severity::kError, file.string(), 0, "", "no readable file", "JSON"});
-  return text;
-}
-
 // JSON is YAML in flow style, and the YAML reader knows the line of every value, which the JSON
 // library does not; that one only judges the grammar.
 YamlMap load_json(const std::filesystem::path& file) {
-  std::string text = read_all(file);
+  std::string text = read_regular_file(file, "JSON", kMaxBytes);
   try {
     // Discarding everything keeps the parser's memory small.
     [[maybe_unused]] const auto discarded = nlohmann::json::parse(

@@ -2,24 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "base/text_file.hpp"
 #include "sim/scenario/scenario_parser.hpp"
 
 namespace roadbook {
 namespace {
-
-std::string read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in)
-    throw BadInput(Problem{Severity::kError, path, 0, "", "an unreadable file", "a scenario"});
-  return text.str();
-}
 
 std::string list_of_builtins() {
   std::string text = "a file or one of";
@@ -64,7 +54,7 @@ Scenario load_scenario(const std::string& name_or_file, const ScenarioOptions& o
     throw BadInput(Problem{Severity::kError, name_or_file, 0, "scenario", "no such file",
                            near ? "'" + *near + "'" : list_of_builtins()});
   }
-  return parse_scenario(read_file(name_or_file), name_or_file, options);
+  return parse_scenario(read_regular_file(name_or_file, "a scenario"), name_or_file, options);
 }
 
 }  // namespace roadbook

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "base/yaml.hpp"
 
 namespace roadbook {
 namespace {
@@ -24,6 +25,7 @@ std::string range_text(double low, double high) {
 }  // namespace
 
 YamlReader YamlReader::parse(const std::string& text, const std::string& file) {
+  require_one_yaml_document(text, file);
   try {
     return {YAML::Load(text), file, ""};
   } catch (const YAML::Exception& e) {

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "base/text_file.hpp"
 #include "roadnet/paths/path_fit.hpp"
 #include "speedmap/property_map/gaussian_process.hpp"
 #include "speedmap/property_map/property_map.hpp"
@@ -23,6 +24,7 @@ struct Row {
 };
 
 std::vector<Row> read_rows(const std::filesystem::path& csv) {
+  require_regular_file(csv, "a table");
   std::ifstream in(csv);
   if (!in)
     throw BadInput(Problem{Severity::kError, csv.string(), 0, "", "no such file", "a table"});

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 #include "drive/csv.hpp"
 #include "drive/true_poses.hpp"
 #include "workflows/people/seen_share.hpp"
@@ -16,8 +16,8 @@ namespace roadbook {
 PeopleTruth::PeopleTruth(const Drive& drive)
     : poses_(true_poses(drive)), blockers_(read_world_blockers(drive.folder())) {
   const auto folder = drive.folder() / "truth";
-  std::ifstream in(folder / "world.json");
-  const auto world = nlohmann::json::parse(in, nullptr, false);
+  const auto world = nlohmann::json::parse(
+      read_regular_file(folder / "world.json", "the truth of a simulated drive"), nullptr, false);
   const auto raster = world.value("/ground/raster"_json_pointer, nlohmann::json::object());
   if (raster.contains("height")) {
     heights_ = raster.at("height").get<std::vector<std::vector<double>>>();

@@ -1,10 +1,10 @@
 #include "workflows/people/truth_scene.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 #include "drive/csv.hpp"
 #include "drive/drive.hpp"
 #include "drive/true_poses.hpp"
@@ -111,8 +111,8 @@ std::vector<Detection> people_of(const std::filesystem::path& file,
 }
 
 Json read_world(const std::filesystem::path& drive) {
-  std::ifstream in(drive / "truth" / "world.json");
-  Json world = Json::parse(in, nullptr, false);
+  const RegularFile file(drive / "truth" / "world.json");
+  Json world = file ? Json::parse(file.get(), nullptr, false) : Json();
   if (!world.is_object())
     throw BadInput(Problem{Severity::kError, (drive / "truth").string(), 0, "truth", "none",
                            "the truth of a simulated drive"});

@@ -10,6 +10,7 @@
 
 #include "apps/label_server/http/http_guard.hpp"
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 
 namespace roadbook {
 namespace {
@@ -22,6 +23,7 @@ std::string read_token(const std::filesystem::path& file) {
     throw BadInput({Severity::kError, file.string(), 0, "mode",
                     "a file that other users can read or write",
                     "a file for its owner only (chmod 600)"});
+  require_regular_file(file, "a file of its own");
   std::ifstream in(file);
   std::string token;
   in >> token;
