@@ -82,5 +82,60 @@ TEST(Yaml, RefusesWhatIsNoMapping) {
   EXPECT_TRUE(YamlMap::parse("", "x").keys().empty());
 }
 
+// The error of a text, or "" where it is read.
+std::string error_of(const std::string& text) {
+  try {
+    (void)YamlMap::parse(text, "x.yaml");
+    return "";
+  } catch (const BadInput& bad) {
+    return to_line(bad.problems().front());
+  }
+}
+
+TEST(Yaml, TakesOneDocumentWithItsMarksAndNothingBehindIt) {
+  EXPECT_EQ(error_of("a: 1\n"), "");
+  EXPECT_EQ(error_of("%YAML 1.2\n# text\n---\na: 1\n...\n# text\n\n"), "");
+  EXPECT_EQ(error_of("--- {a: 1}\n"), "");
+  EXPECT_EQ(error_of("\xEF\xBB\xBF%YAML:1.0\r\n---\r\na: 1\r\n"), "");
+  EXPECT_EQ(error_of("a: ---\nb: \"...\"\nc: 5 %\n"), "");
+  EXPECT_EQ(error_of("a: 1\n---\nb: 2\n"),
+            "error: x.yaml:2: got a second document ('---'), want one document");
+  EXPECT_EQ(error_of("---\na: 1\n---\n"),
+            "error: x.yaml:3: got a second document ('---'), want one document");
+  EXPECT_EQ(error_of("a: 1\n...\nb: 2\n"),
+            "error: x.yaml:3: got text behind the end of the document ('...'), want one document");
+  EXPECT_EQ(
+      error_of("a: 1\n%b: 2\nc: 3\n"),
+      "error: x.yaml:2: got a directive ('%') within the document, want directives before the "
+      "document alone");
+}
+
+TEST(Yaml, TakesTextInUtf8Alone) {
+  EXPECT_EQ(error_of("a: \"B\xC3\xBC\x63her\"\n"), "");
+  EXPECT_EQ(error_of("a: 1\nb: \"B\xFC\x63her\"\n"),
+            "error: x.yaml:2: got bytes that are no UTF-8, want UTF-8 text");
+  EXPECT_EQ(error_of(std::string("\xFF\xFE") + std::string("a\0:\0", 4)),
+            "error: x.yaml:1: got UTF-16 or UTF-32 text, want UTF-8 text");
+  // The parser takes the character 4 for the end of the file.
+  EXPECT_EQ(error_of("a: 1\n\x04\nb: 2\n"),
+            "error: x.yaml:2: got the control character 4, want text");
+  EXPECT_EQ(error_of(std::string("a: 1\n\0b: 2\n", 12)),
+            "error: x.yaml:2: got the control character 0, want text");
+}
+
+TEST(Yaml, OpensRegularFilesAlone) {
+  const auto error = [](const char* path) {
+    try {
+      (void)YamlMap::load(path);
+    } catch (const BadInput& bad) {
+      return to_line(bad.problems().front());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(error("/dev/zero"), "error: /dev/zero: got a device, want YAML");
+  EXPECT_EQ(error("/"), "error: /: got a folder, want YAML");
+  EXPECT_EQ(error("/nowhere/x.yaml"), "error: /nowhere/x.yaml: got no readable file, want YAML");
+}
+
 }  // namespace
 }  // namespace roadbook

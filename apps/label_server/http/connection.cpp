@@ -12,6 +12,8 @@
 namespace roadbook {
 namespace {
 
+constexpr std::chrono::milliseconds kSlice{50};  // between two looks at the clock
+
 // Calls poll() again after an interrupt.
 bool poll_for(int socket, short events, std::chrono::milliseconds time, short* seen) {
   pollfd entry{socket, events, 0};
@@ -33,6 +35,18 @@ bool Connection::is_writable() const {
   return (seen & POLLOUT) != 0 && (seen & (POLLRDHUP | POLLHUP | POLLERR)) == 0;
 }
 
+bool Connection::is_over(Clock::time_point begin, std::chrono::milliseconds most) const {
+  const auto now = Clock::now();
+  if (begin > now) return false;
+  return now - begin >= most || (now - begin >= limits_.pressed && pressed_ && pressed_());
+}
+
+bool Connection::await_bytes() const {
+  while (in_time())
+    if (wait_readable(kSlice)) return true;
+  return false;
+}
+
 bool Connection::fill() {
   std::array<char, 8192> bytes{};
   ssize_t count = 0;
@@ -45,7 +59,7 @@ bool Connection::fill() {
 }
 
 Connection::Head Connection::read_head() {
-  deadline_ = Clock::now() + limits_.request;
+  begin_of_request_ = Clock::now();
   buffer_.erase(0, begin_);
   begin_ = 0;
   while (true) {
@@ -54,9 +68,7 @@ Connection::Head Connection::read_head() {
     if (std::min(line, buffer_.size()) > limits_.target_bytes) return Head::kTooLong;
     if (std::min(end, buffer_.size()) > limits_.head_bytes) return Head::kTooLong;
     if (end != std::string::npos) return Head::kWhole;
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - Clock::now());
-    if (left.count() <= 0 || !wait_readable(left)) return Head::kTooSlow;
+    if (!await_bytes()) return Head::kTooSlow;
     if (!fill()) return Head::kNone;
   }
 }
@@ -70,9 +82,7 @@ bool Connection::has_field(const std::string& name) const {
 
 std::ptrdiff_t Connection::read(char* bytes, std::size_t size) {
   while (begin_ == buffer_.size()) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - Clock::now());
-    timed_out_ = left.count() <= 0 || !wait_readable(left);
+    timed_out_ = !await_bytes();
     if (timed_out_ || !fill()) return 0;
   }
   const std::size_t count = std::min(size, buffer_.size() - begin_);
@@ -82,8 +92,11 @@ std::ptrdiff_t Connection::read(char* bytes, std::size_t size) {
 }
 
 std::ptrdiff_t Connection::write(const char* bytes, std::size_t size) {
+  const auto begin = Clock::now();
   short seen = 0;
-  if (!poll_for(socket_, POLLOUT, limits_.write, &seen) || (seen & POLLOUT) == 0) return -1;
+  while (!poll_for(socket_, POLLOUT, kSlice, &seen))
+    if (is_over(begin, limits_.write)) return -1;
+  if ((seen & POLLOUT) == 0) return -1;
   const ssize_t count = ::send(socket_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return 0;
   return count;

@@ -85,15 +85,23 @@ void give(HttpResponse response, httplib::Response* out) {
       });
 }
 
+/// How busy the threads of a server are.
+struct Load {
+  std::atomic<std::size_t> waiting = 0;  ///< connections without a thread
+  std::atomic<std::size_t> busy = 0;     ///< threads with a connection
+};
+
 /// A thread pool with a queue of limited length. If the queue is full, the server refuses the
 /// connection.
 class BoundedLine : public httplib::TaskQueue {
  public:
-  BoundedLine(std::size_t threads, std::size_t most) : pool_(threads), most_(most) {}
+  BoundedLine(std::size_t threads, std::size_t most, Load* load)
+      : pool_(threads), most_(most), load_(load) {}
 
   // Only the accepting thread calls this function.
   void enqueue(std::function<void()> task) override {
     std::unique_lock lock(mutex_);
+    ++load_->waiting;
     room_.wait(lock, [this] { return waiting_ < most_; });
     ++waiting_;
     pool_.enqueue([this, task = std::move(task)] {
@@ -101,8 +109,11 @@ class BoundedLine : public httplib::TaskQueue {
         const std::lock_guard leave(mutex_);
         --waiting_;
       }
+      --load_->waiting;
+      ++load_->busy;
       room_.notify_one();
       task();
+      --load_->busy;
     });
   }
   void shutdown() override { pool_.shutdown(); }
@@ -110,6 +121,7 @@ class BoundedLine : public httplib::TaskQueue {
  private:
   httplib::ThreadPool pool_;
   std::size_t most_;
+  Load* load_;
   std::size_t waiting_ = 0;
   std::mutex mutex_;
   std::condition_variable room_;
@@ -126,9 +138,7 @@ class BoundedServer : public httplib::Server {
     set_tcp_nodelay(true);
     set_keep_alive_timeout(2);
     set_payload_max_length(options.body_bytes);
-    new_task_queue = [threads = options.threads, most = options.waiting] {
-      return new BoundedLine(threads, most);
-    };
+    new_task_queue = [this] { return new BoundedLine(options_.threads, options_.waiting, &load_); };
   }
 
   void serve(const HttpGuard& guard, const HttpHandler& handler) {
@@ -166,7 +176,8 @@ class BoundedServer : public httplib::Server {
 
  private:
   bool process_and_close_socket(socket_t socket) override {
-    Connection connection(socket, options_.limits);
+    Connection connection(socket, options_.limits,
+                          [this] { return load_.waiting > 0 && load_.busy >= options_.threads; });
     ConnectionStream stream(&connection);
     connection_of_thread = &connection;
     bool open = true;
@@ -209,6 +220,7 @@ class BoundedServer : public httplib::Server {
   }
 
   HttpServerOptions options_;
+  Load load_;
 };
 
 std::string taken(int port) {
