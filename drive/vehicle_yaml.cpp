@@ -2,8 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "base/yaml.hpp"
+#include "drive/sensor_yaml.hpp"
 #include "sensors/calibration/calibration_fields.hpp"
 
 namespace roadbook {
@@ -115,6 +118,29 @@ void warn_of_vehicle(const std::filesystem::path& file,
                        mounted.name + " at x " + decimal(at.x()) + ", y " + decimal(at.y()),
                        places_of(vehicle));
   }
+}
+
+std::vector<Problem> doubts_of_given_vehicle(const std::filesystem::path& file,
+                                             const VehicleMeasures& vehicle,
+                                             const std::filesystem::path& drive) {
+  std::error_code ignored;
+  const auto deeper = drive / "mav0";
+  const auto sensors = std::filesystem::is_directory(deeper, ignored) ? deeper : drive;
+  ProblemList faults;  // told where the drive is opened
+  Rig rig;
+  for (int number = 0; number < 64; ++number) {
+    const std::string name = "cam" + std::to_string(number);
+    if (!std::filesystem::exists(sensors / name / "sensor.yaml", ignored)) continue;
+    if (auto camera = read_camera_yaml(sensors / name / "sensor.yaml", name, 1e4, faults))
+      rig.cameras.push_back(std::move(camera->camera));
+  }
+  std::optional<WheelModel> wheels;
+  if (std::filesystem::exists(sensors / "wheels0" / "sensor.yaml", ignored))
+    if (const auto found = read_wheel_yaml(sensors / "wheels0" / "sensor.yaml", faults))
+      wheels = found->wheels;
+  ProblemList doubts;
+  if (!faults.has_errors()) warn_of_vehicle(file, sensors, vehicle, rig, wheels, doubts);
+  return doubts.problems();
 }
 
 }  // namespace roadbook

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "drive/problem_list.hpp"
 #include "sensors/rig.hpp"
@@ -39,5 +40,11 @@ void warn_of_vehicle(const std::filesystem::path& file,
                      const Rig& rig,
                      const std::optional<WheelModel>& wheels,
                      ProblemList& problems);
+
+/// The same of measures that the user gives (--vehicle) for a recorded drive. Empty where the drive
+/// cannot be read, which opening it reports.
+[[nodiscard]] std::vector<Problem> doubts_of_given_vehicle(const std::filesystem::path& file,
+                                                           const VehicleMeasures& vehicle,
+                                                           const std::filesystem::path& drive);
 
 }  // namespace roadbook

@@ -48,6 +48,11 @@ MapResult map_drives(const MapRequest& request, Messages& messages) {
       options.replace ? request.drives : with_drives_of_map(request.map, request.drives, messages);
   MapResult result{build_map(drives, request.map, options, messages.progress()), {}};
   if (result.summary.is_unchanged) return result;
+  if (options.vehicle)
+    for (const auto& drive : drives) {
+      const auto doubts = doubts_of_given_vehicle(request.vehicle, *options.vehicle, drive);
+      result.summary.warnings.insert(result.summary.warnings.end(), doubts.begin(), doubts.end());
+    }
   if (lost_places) result.summary.warnings.push_back(*lost_places);
   result.dropped = dropped_work(result.summary.dropped, request.map);
   return result;

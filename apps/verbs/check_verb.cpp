@@ -62,6 +62,9 @@ Verb check_verb() {
             options.add("PATH", path.get(), "folder of a drive, or map file").required = true;
           },
           [path](Console& console, const CommonOptions&) {
+            if (!std::filesystem::exists(*path))
+              throw BadInput({Severity::kError, path->string(), 0, "", "no such file or folder",
+                              "the folder of a drive, or a map file"});
             return std::filesystem::is_directory(*path) ? check_recording(*path, console)
                                                         : check_file(*path, console);
           }};

@@ -120,5 +120,24 @@ TEST(VehicleYaml, WarnsOfWhatIsHardlyRight) {
       << warnings_of(drive);
 }
 
+TEST(VehicleYaml, MeasuresGivenForADriveAreComparedWithItsCamerasAndWheels) {
+  const TemporaryFolder f;
+  const fs::path drive = write_small_drive(f.path() / "d");
+  VehicleMeasures car;
+  car.length_m = 4.5;
+  car.width_m = 1.8;
+  car.rear_overhang_m = 0.9;
+  car.wheelbase_m = 2.6;
+  EXPECT_TRUE(doubts_of_given_vehicle("car.yaml", car, drive).empty());
+  VehicleMeasures bus = car;
+  bus.length_m = 11.0;
+  bus.wheelbase_m = 6.0;
+  const auto doubts = doubts_of_given_vehicle("bus.yaml", bus, drive);
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_EQ(to_line(doubts[0]),
+            "warning: bus.yaml: wheelbase: got 6.0, want 2.6 within 10 % as in "
+            "wheels0/sensor.yaml");
+}
+
 }  // namespace
 }  // namespace roadbook::test
