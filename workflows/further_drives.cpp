@@ -22,30 +22,66 @@ std::filesystem::path drive_at_hand(const std::filesystem::path& map_file, const
   return folder.lexically_normal();
 }
 
+[[noreturn]] void refuse_drive(const std::filesystem::path& drive,
+                               const std::string& got,
+                               const std::string& want) {
+  throw BadInput({Severity::kError, drive.string(), 0, "drive", got, want});
+}
+
+// Whether `digests` are those of the map's last sessions, in order: a command that extended the map
+// by them has been done.
+bool ends_with(const std::vector<Session>& sessions, const std::vector<std::string>& digests) {
+  return digests.size() <= sessions.size() &&
+         std::equal(
+             digests.rbegin(), digests.rend(), sessions.rbegin(),
+             [](const std::string& digest, const Session& s) { return digest == s.drive_digest; });
+}
+
+// Refuses the first of `given` that the map has.
+void refuse_known(const std::filesystem::path& map_file,
+                  const std::vector<Session>& sessions,
+                  const std::vector<std::filesystem::path>& given,
+                  const std::vector<std::string>& digests) {
+  for (std::size_t i = 0; i < given.size(); ++i)
+    for (const Session& session : sessions)
+      if (session.drive_digest == digests[i])
+        refuse_drive(given[i], "session " + session.name + " of " + map_file.string(),
+                     "drives that the map lacks, all its drives in its order, or --replace");
+}
+
 }  // namespace
+
+std::vector<std::string> refuse_same_drives(const std::vector<std::filesystem::path>& drives) {
+  std::vector<std::string> digests;
+  for (const auto& folder : drives) {
+    digests.push_back(Drive::open(folder).digest());
+    for (std::size_t i = 0; i + 1 < digests.size(); ++i)
+      if (digests[i] == digests.back())
+        refuse_drive(folder, "the same drive as " + drives[i].string(), "each drive once");
+  }
+  return digests;
+}
 
 std::vector<std::filesystem::path> with_drives_of_map(
     const std::filesystem::path& map_file,
     const std::vector<std::filesystem::path>& given,
     const Messages& messages) {
+  const std::vector<std::string> digests = refuse_same_drives(given);
   if (!std::filesystem::exists(map_file)) return given;
-  std::vector<std::string> digests;
-  for (const auto& folder : given) digests.push_back(Drive::open(folder).digest());
   const ExistingMap existing = read_existing_map(map_file, digests);
   if (existing.goes_on()) return given;
   const auto& sessions = existing.map.sessions;
-  std::vector<std::filesystem::path> further;
-  for (std::size_t i = 0; i < given.size(); ++i)
-    if (std::none_of(sessions.begin(), sessions.end(),
-                     [&](const Session& s) { return s.drive_digest == digests[i]; }))
-      further.push_back(given[i]);
-  if (further.empty()) return given;  // fewer drives than the map has: only with --replace
+  const bool is_done = ends_with(sessions, digests);
+  if (!is_done) refuse_known(map_file, sessions, given, digests);
   std::vector<std::filesystem::path> drives;
   for (const Session& session : sessions) drives.push_back(drive_at_hand(map_file, session));
-  drives.insert(drives.end(), further.begin(), further.end());
-  messages.note("the map of " + existing.names() + " goes on with " +
-                std::to_string(further.size()) +
-                (further.size() == 1 ? " further drive" : " further drives"));
+  if (is_done) {
+    messages.note("the map of " + existing.names() + " has these drives");
+    return drives;
+  }
+  drives.insert(drives.end(), given.begin(), given.end());
+  messages.note("the map of " + existing.names() + " goes on with " + std::to_string(given.size()) +
+                (given.size() == 1 ? " further drive" : " further drives"));
   return drives;
 }
 

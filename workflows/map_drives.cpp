@@ -3,6 +3,7 @@
 #include "drive/vehicle_yaml.hpp"
 #include "exchange/layers/friction_layers.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_lock.hpp"
 #include "semantics/labels/label_drives.hpp"
 #include "semantics/labels/label_layers.hpp"
 #include "semantics/labels/label_store.hpp"
@@ -29,6 +30,7 @@ std::string digest_of_labels(const std::filesystem::path& map) {
 }  // namespace
 
 MapResult map_drives(const MapRequest& request, Messages& messages) {
+  const MapHold hold(request.map);  // what is read of the map stays true until it is written
   MapOptions options = request.options;
   options.keep_tables = measured_tables();
   options.keep_tables_of_drives = learning_tables();
@@ -44,6 +46,7 @@ MapResult map_drives(const MapRequest& request, Messages& messages) {
     options.equal_rows = [&](const Map& map) { return space_rows(map, labels_there(request.map)); };
   if (!request.vehicle.empty()) options.vehicle = load_vehicle(request.vehicle);
   if (!request.model.empty()) options.model = read_effect_model(request.model);
+  if (options.replace) refuse_same_drives(request.drives);
   const auto drives =
       options.replace ? request.drives : with_drives_of_map(request.map, request.drives, messages);
   MapResult result{build_map(drives, request.map, options, messages.progress()), {}};

@@ -13,6 +13,7 @@ OverheadResult overhead_of_map(const OverheadRequest& request, Messages& message
   OverheadOptions options = request.options;
   if (!request.vehicle.empty()) options.vehicle = load_vehicle(request.vehicle);
   OverheadResult result;
+  MapUpdate update(request.map);  // locks the map between reading and writing
   result.map = load_map(request.map);
   const auto drives = open_session_drives(request.map, result.map, request.drives, messages);
   std::vector<const Drive*> pointers;
@@ -25,7 +26,6 @@ OverheadResult overhead_of_map(const OverheadRequest& request, Messages& message
       request.output.empty() ? std::filesystem::path(request.map).replace_extension() += "_overhead"
                              : request.output;
   result.summary = make_overhead(result.map, pointers, folder, options, messages.progress());
-  MapUpdate update(request.map);
   store_overhead(result.map, result.summary, &update);
   update.commit();
   for (std::size_t s = 0; s < result.summary.vehicles.size(); ++s)

@@ -1,5 +1,7 @@
 #include "workflows/session_drives.hpp"
 
+#include "mapping/store/map_file_disk.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -18,7 +20,7 @@ std::size_t session_made_of(const Map& map, const Drive& drive) {
 std::filesystem::path session_folder(const std::filesystem::path& map_file,
                                      const Session& session) {
   // operator/ replaces the folder by an absolute drive_path.
-  return std::filesystem::absolute(map_file).parent_path() / session.drive_path;
+  return std::filesystem::absolute(linked_file(map_file)).parent_path() / session.drive_path;
 }
 
 std::vector<std::optional<Drive>> open_session_drives(

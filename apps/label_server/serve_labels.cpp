@@ -9,6 +9,8 @@
 #include "apps/label_server/label_api.hpp"
 #include "apps/user_name.hpp"
 #include "base/error.hpp"
+#include "mapping/store/map_file_lock.hpp"
+#include "mapping/store/map_file_open.hpp"
 #include "semantics/labels/label_drives.hpp"
 #include "semantics/labels/label_layers.hpp"
 #include "workflows/drive_images.hpp"
@@ -104,6 +106,8 @@ std::size_t serve(const LabelServerRequest& request, HttpServer& server, Console
 }  // namespace
 
 std::size_t serve_labels(const LabelServerRequest& request, HttpServer& server, Console& console) {
+  // Nobody else changes the map while pages are open. Others may read it.
+  const MapHold hold(existing_map_file(request.map));
   const std::size_t changes = serve(request, server, console);
   try {
     // An earlier server may have been killed before it renewed the layers.

@@ -49,6 +49,7 @@ void run_diagnose(const DiagnoseCommand& command, int threads, Console& console)
     return print_repeated(repeat_ledger_run(command.map, command.again, threads, console),
                           command.again, command.map, console);
   const DiagnosisRequest request = diagnosis_request(command);
+  const auto hold = command.keep ? hold_ledger(command.map) : nullptr;
   const DiagnosisRun made = run_diagnosis(request, threads, console);
   if (!command.write_model.empty())
     write_whole_file(command.write_model, effect_model_text(made.diagnosis.extended));

@@ -4,6 +4,8 @@
 #include "exchange/import/foreign_classes.hpp"
 #include "exchange/import/label_matching.hpp"
 #include "exchange/import/outline_labels.hpp"
+#include "mapping/store/map_file_lock.hpp"
+#include "mapping/store/map_file_open.hpp"
 #include "semantics/labels/label_classes.hpp"
 #include "semantics/labels/label_layers.hpp"
 #include "semantics/labels/label_store.hpp"
@@ -78,6 +80,7 @@ LabelImport import_labels(const std::filesystem::path& map,
                           const std::string& who,
                           const std::optional<GeoOrigin>& origin,
                           const std::string& class_field) {
+  const MapHold hold(existing_map_file(map));
   LabelFile file = read_label_file(map, format, source, origin, class_field);
   const MapLayers layers(map);
   const auto classes = read_label_classes(layers);

@@ -18,6 +18,8 @@
 #include "mapping/similarity.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
+#include "mapping/store/map_file_disk.hpp"
+#include "mapping/store/map_file_lock.hpp"
 #include "vo/own_car_mask.hpp"
 
 namespace roadbook {
@@ -82,7 +84,7 @@ std::vector<LoopClosure> loops_of(const MappingInput& input,
 std::string drive_path_of(const Drive& drive, const std::filesystem::path& map) {
   std::error_code ignored;
   const auto relative = std::filesystem::relative(
-      drive.folder(), std::filesystem::absolute(map).parent_path(), ignored);
+      drive.folder(), std::filesystem::absolute(linked_file(map)).parent_path(), ignored);
   return relative.empty() ? drive.folder().string() : relative.string();
 }
 
@@ -191,11 +193,14 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
     }
     return opened;
   });
+  const MapHold hold(map_path);
+  const std::string key = checkpoint_key(drives, options);
   const auto existing = existing_map(map_path, drives, options);
   if (existing && !options.replace && is_built_from(*existing, map_path, drives, options)) {
     count_contents(existing->map, summary);
     summary.is_unchanged = true;
     summary.digest = load_meta(map_path).digest;
+    if (hold.waiting_build() == key) hold.remove_checkpoints();  // killed after it was done
     renew_drive_paths(existing->map, drives, map_path);
     return summary;
   }
@@ -205,7 +210,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
     keep_tables = tables_to_keep(*existing, map_path, drives, options, summary.warnings);
     names_before = MapLayers(map_path).all_names();
   }
-  MapFileBuilder build(map_path, inputs_key(drives, options));
+  MapFileBuilder build(map_path, key);
   for (const auto& line : build.warnings())
     summary.warnings.push_back({Severity::kWarning, map_path.string(), 0, "", line, ""});
 

@@ -4,8 +4,8 @@
 
 #include "base/digest.hpp"
 #include "mapping/pipeline/map_options_text.hpp"
+#include "mapping/pipeline/program_digest.hpp"
 #include "mapping/store/map_file.hpp"
-#include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_tables.hpp"
 
 namespace roadbook {
@@ -26,6 +26,16 @@ void add_masks(const Drive& drive, std::size_t index, Sha256& digest) {
     if (const auto mask = drive.mask_path(camera))
       digest.update("mask " + std::to_string(index) + " " + std::to_string(camera))
           .update_file(*mask);
+}
+
+// The map itself does not name the program: two builds of the same version make equal maps.
+std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& options) {
+  Sha256 digest;
+  digest.update(std::string(kPipelineVersion) + " " + options_text(options) + " " +
+                std::to_string(options.seed));
+  for (const std::string& drive : digests_of(drives)) digest.update(drive);
+  for (std::size_t i = 0; i < drives.size(); ++i) add_masks(drives[i], i, digest);
+  return digest.hex();
 }
 
 // The checkpoints do not depend on the labels whose rows straighten the map; the map does.
@@ -53,12 +63,9 @@ bool is_same_camera(const MountedCamera& a, const MountedCamera& b) {
 
 }  // namespace
 
-std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& options) {
+std::string checkpoint_key(const std::vector<Drive>& drives, const MapOptions& options) {
   Sha256 digest;
-  digest.update(std::string(kPipelineVersion) + " " + options_text(options) + " " +
-                std::to_string(options.seed));
-  for (const std::string& drive : digests_of(drives)) digest.update(drive);
-  for (std::size_t i = 0; i < drives.size(); ++i) add_masks(drives[i], i, digest);
+  digest.update(inputs_key(drives, options) + " " + program_digest());
   return digest.hex();
 }
 
@@ -85,8 +92,7 @@ bool is_built_from(const ExistingMap& existing,
                    const std::vector<Drive>& drives,
                    const MapOptions& options) {
   return existing.goes_on() && existing.stay == drives.size() &&
-         meta_has(file, inputs_meta(drives, options)) &&
-         MapFileBuilder::inputs_key_of(file) != inputs_key(drives, options);
+         meta_has(file, inputs_meta(drives, options));
 }
 
 std::vector<std::string> tables_to_keep(const ExistingMap& existing,

@@ -14,9 +14,10 @@ namespace roadbook {
 
 // What a map is made from, and how that compares with the map that is there.
 
-/// Digest of everything that the checkpoints of a build depend on: drives, options, seed, version
-/// of the pipeline.
-[[nodiscard]] std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& options);
+/// Digest of everything that the checkpoints of a build depend on: drives, options, seed, and the
+/// program itself. A newer program does not take up what an older one has begun.
+[[nodiscard]] std::string checkpoint_key(const std::vector<Drive>& drives,
+                                         const MapOptions& options);
 
 /// Values of `map_meta` about the inputs of a map: options, seed, and the key of all inputs.
 [[nodiscard]] std::map<std::string, std::string> inputs_meta(const std::vector<Drive>& drives,
@@ -28,8 +29,8 @@ namespace roadbook {
                                                       const std::vector<Drive>& drives,
                                                       const MapOptions& options);
 
-/// Whether the map was made from exactly these drives, options, seed and version of the program,
-/// and no build of it waits to be finished: a build would end at the same content.
+/// Whether the map was made from exactly these drives, options, seed and version of the pipeline: a
+/// build would end at the same content.
 [[nodiscard]] bool is_built_from(const ExistingMap& existing,
                                  const std::filesystem::path& file,
                                  const std::vector<Drive>& drives,

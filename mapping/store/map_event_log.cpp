@@ -74,32 +74,22 @@ Log read_log(const SqlDatabase& database, const std::string& table) {
 struct MapEventLog::Impl {
   Impl(const std::filesystem::path& map, const std::string& name)
       : table(table_of(name)),
-        had_part(std::filesystem::exists(beside(map, ".part"))),
+        hold(existing_map_file(map)),
         lock((begin(map, table), map)),
         database(map, SqlMode::kReadWrite) {
     log = read_log(database, table);
   }
-  /// The lock file goes, unless it holds the checkpoints of a build.
-  ~Impl() {
-    try {
-      if (!had_part) lock.remove_file();
-    } catch (const Error&) {
-      // The remaining file is no map and does no harm; a destructor cannot report.
-    }
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-
-  // Verifies the map, and adds the table if it is missing.
+  // Verifies the map, and adds the table if it is missing. Events go into the file in place: a file
+  // of several names (hard links) is copied first, so that each name has its own lock and log.
   static void begin(const std::filesystem::path& map, const std::string& table) {
-    if (has_table(open_verified(map), table)) return;
+    if (std::filesystem::hard_link_count(map) == 1 && has_table(open_verified(map), table)) return;
     MapUpdate update(map);
-    update.write_table(empty_log(table));
+    if (!has_table(open_verified(map), table)) update.write_table(empty_log(table));
     update.commit();
   }
 
   std::string table;
-  bool had_part;
+  MapHold hold;  ///< over the two steps: the table is begun, then the log is opened
   MapLock lock;
   SqlDatabase database;
   Log log;

@@ -146,16 +146,6 @@ MapFileBuilder::~MapFileBuilder() = default;
 const std::vector<std::string>& MapFileBuilder::stages() const { return impl_->stages; }
 const std::vector<std::string>& MapFileBuilder::warnings() const { return impl_->warnings; }
 
-std::string MapFileBuilder::inputs_key_of(const std::filesystem::path& map) {
-  const std::filesystem::path part = beside(map, ".part");
-  if (!std::filesystem::exists(part)) return {};
-  try {
-    return SqlDatabase(part, SqlMode::kRead).value("SELECT inputs_key FROM build");
-  } catch (const Error&) {
-    return {};  // locked by its builder, the lock of an update, or damaged
-  }
-}
-
 bool MapFileBuilder::has(std::string_view stage) const {
   return std::find(impl_->stages.begin(), impl_->stages.end(), stage) != impl_->stages.end();
 }

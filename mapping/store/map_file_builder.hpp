@@ -30,9 +30,6 @@ class MapFileBuilder {
 
   /// Stages completed so far, in the order they were saved.
   [[nodiscard]] const std::vector<std::string>& stages() const;
-  /// The inputs key of the build that waits in MAP.part; empty where none does, or where it cannot
-  /// be read.
-  [[nodiscard]] static std::string inputs_key_of(const std::filesystem::path& map);
   [[nodiscard]] bool has(std::string_view stage) const;
   /// What was dropped on opening, one line each.
   [[nodiscard]] const std::vector<std::string>& warnings() const;

@@ -29,9 +29,22 @@ void sync_path(const std::filesystem::path& path, int flags) {
   if (code != 0) fail_disk(path, "fsync", std::strerror(fault));
 }
 
-std::filesystem::path journal_of(std::filesystem::path file) { return file += "-journal"; }
+std::filesystem::path journal_of(const std::filesystem::path& file) {
+  return linked_file(file) += "-journal";
+}
 
 }  // namespace
+
+std::filesystem::path linked_file(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;
+  std::error_code error;
+  for (int i = 0; std::filesystem::is_symlink(path, error); ++i) {
+    const auto target = std::filesystem::read_symlink(path, error);
+    if (error || i == kMostLinks) fail_disk(path, "link", "links in a circle");
+    path = path.parent_path() / target;
+  }
+  return path;
+}
 
 void remove_database(const std::filesystem::path& file) {
   for (const std::filesystem::path& path : {file, journal_of(file)}) {
@@ -41,7 +54,8 @@ void remove_database(const std::filesystem::path& file) {
   }
 }
 
-void replace_file(const std::filesystem::path& file, const std::filesystem::path& target) {
+void replace_file(const std::filesystem::path& file, const std::filesystem::path& name) {
+  const std::filesystem::path target = linked_file(name);
   sync_path(file, O_RDONLY);
   recover_database(target);
   std::error_code error;

@@ -22,9 +22,7 @@ void refuse_file(const std::filesystem::path& path,
   throw BadInput(Problem{Severity::kError, path.string(), 0, field, got, want});
 }
 
-namespace {
-
-void check_exists(const std::filesystem::path& path) {
+const std::filesystem::path& existing_map_file(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found)
@@ -34,7 +32,10 @@ void check_exists(const std::filesystem::path& path) {
         to_line({Severity::kError, path.string(), 0, "map", error.message(), "a readable file"}));
   if (!std::filesystem::is_regular_file(status))
     refuse_file(path, "map", "no regular file", "a map file");
+  return path;
 }
+
+namespace {
 
 void check_schema(const SqlDatabase& database) {
   const auto& path = database.file();
@@ -95,8 +96,7 @@ class RightFiles {
 };
 
 SqlDatabase open_existing(const std::filesystem::path& path, bool look_at_pages) {
-  check_exists(path);
-  recover_database(path);
+  recover_database(existing_map_file(path));
   SqlDatabase database(path, SqlMode::kRead);
   const std::string fault = look_at_pages ? database.value("PRAGMA quick_check(1)") : "ok";
   if (fault != "ok") refuse_file(path, "quick_check", fault, "ok");

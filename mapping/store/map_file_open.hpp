@@ -13,6 +13,10 @@ namespace roadbook {
                               const std::string& got,
                               const std::string& want);
 
+/// Returns `path`, if it is an existing file; throws BadInput otherwise. To be called before the
+/// map is locked, so that a wrong name leaves no lock file.
+[[nodiscard]] const std::filesystem::path& existing_map_file(const std::filesystem::path& path);
+
 /// Opens a map file for reading: it exists, SQLite finds no fault in its pages, its schema version
 /// is known, its state is complete. Digests are not compared. Throws BadInput, StorageError.
 [[nodiscard]] SqlDatabase open_map_file(const std::filesystem::path& path);

@@ -18,30 +18,15 @@ namespace roadbook {
 
 struct MapUpdate::Impl {
   explicit Impl(const std::filesystem::path& map_file)
-      : map(map_file),
-        lock(map_file),
-        holds_build(!is_empty(lock.database())),
-        copy(beside(map_file, ".new")) {
+      : map(map_file), lock(existing_map_file(map_file)), copy(beside(map_file, ".new")) {
     try {
       copy_map_file(map, copy);
       content_time = utc_text(newest_session_ns(open_map_file(copy)));
     } catch (...) {
       std::error_code ignored;  // half a copy would keep a full disk full
       std::filesystem::remove(copy, ignored);
-      release();
       throw;
     }
-  }
-
-  /// A lock file without a table is one that a killed process has left.
-  static bool is_empty(const SqlDatabase& database) {
-    SqlStatement row = database.prepare("SELECT count(*) FROM sqlite_master");
-    return row.step() && row.integer(0) == 0;
-  }
-
-  /// The lock file goes, unless it holds the checkpoints of a build.
-  void release() const {
-    if (!holds_build) lock.remove_file();
   }
 
   [[nodiscard]] SqlDatabase database() const {
@@ -52,7 +37,6 @@ struct MapUpdate::Impl {
 
   std::filesystem::path map;
   MapLock lock;
-  bool holds_build;
   std::filesystem::path copy;
   std::string content_time;
 };
@@ -63,7 +47,6 @@ MapUpdate::~MapUpdate() {
   if (!impl_) return;
   try {
     remove_database(impl_->copy);
-    impl_->release();
   } catch (const Error&) {
     // The next change removes a remaining copy; a destructor cannot report.
   }
@@ -132,7 +115,6 @@ void MapUpdate::note(const std::string& action, const std::string& detail) {
 void MapUpdate::commit() {
   seal_map_file(impl_->copy);
   replace_file(impl_->copy, impl_->map);
-  impl_->release();
   impl_.reset();
 }
 

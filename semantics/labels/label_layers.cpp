@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "mapping/store/map_file_lock.hpp"
 #include "semantics/labels/label_classes.hpp"
 #include "semantics/labels/label_store.hpp"
 
@@ -128,6 +129,7 @@ void write_label_layers(MapUpdate& update,
 }
 
 void renew_label_layers(const std::filesystem::path& map) {
+  const MapHold hold(map);
   const MapLayers layers(map);
   const auto labels = read_labels(map);
   const bool stale = std::any_of(kNames.begin(), kNames.end(),

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "mapping/store/map_file_open.hpp"
 #include "workflows/diagnosis/diagnosis_json.hpp"
 #include "workflows/diagnosis/diagnosis_ledger.hpp"
 
@@ -37,6 +38,10 @@ std::string difference_of(const LedgerRun& kept, const std::filesystem::path& ma
 }
 
 }  // namespace
+
+std::unique_ptr<MapHold> hold_ledger(const std::filesystem::path& map) {
+  return std::make_unique<MapHold>(existing_map_file(map));
+}
 
 std::int64_t keep_in_ledger(const std::filesystem::path& map,
                             const DiagnosisRequest& request,

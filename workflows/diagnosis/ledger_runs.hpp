@@ -2,14 +2,20 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "base/messages.hpp"
+#include "mapping/store/map_file_lock.hpp"
 #include "workflows/diagnosis/diagnosis_run.hpp"
 
 namespace roadbook {
+
+/// Holds the map from before a diagnosis reads it until its run is in the ledger: the run belongs
+/// to the map that it has read. Throws BadInput without a map, StorageError if the map is locked.
+[[nodiscard]] std::unique_ptr<MapHold> hold_ledger(const std::filesystem::path& map);
 
 /// Adds a run to the ledger of `map`. Returns its number, from 1. Throws as `add_to_ledger`.
 std::int64_t keep_in_ledger(const std::filesystem::path& map,
