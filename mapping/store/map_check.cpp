@@ -8,6 +8,7 @@
 #include "mapping/store/map_file_digest.hpp"
 #include "mapping/store/map_file_open.hpp"
 #include "mapping/store/map_file_tables.hpp"
+#include "mapping/store/rtree_check.hpp"
 
 namespace roadbook {
 namespace {
@@ -148,8 +149,8 @@ void check_loops(const Map& map, Findings& findings) {
   }
 }
 
-void count_rows(const SqlDatabase& database, MapReport& report) {
-  for (const auto& [table, digest] : compute_digests(database).tables)
+void count_rows(const SqlDatabase& database, const MapDigests& digests, MapReport& report) {
+  for (const auto& [table, digest] : digests.tables)
     report.rows[table] = static_cast<std::size_t>(
         std::stoull(database.value("SELECT count(*) FROM " + sql_name(table))));
 }
@@ -171,15 +172,12 @@ MapReport check_map(const std::filesystem::path& path) {
   try {
     const SqlDatabase database = open_map_file(path);
     const std::string fault = database.value("PRAGMA integrity_check(1)");
-    if (fault != "ok")
-      report.problems.push_back(
-          {Severity::kError, path.string(), 0, "integrity_check", fault, "ok"});
-    const MapDigests digests = compute_digests(database);
-    for (Problem& problem : compare_digests(database, digests))
-      report.problems.push_back(std::move(problem));
+    if (fault != "ok") refuse_file(path, "integrity_check", fault, "ok");
+    const MapDigests digests = verified_digests(database);
+    count_rows(database, digests, report);
     for (Problem& problem : event_log_problems(database))
       report.problems.push_back(std::move(problem));
-    count_rows(database, report);
+    for (Problem& problem : rtree_problems(database)) report.problems.push_back(std::move(problem));
     for (Problem& problem : map_problems(read_map_tables(database))) {
       problem.file = path.string();
       report.problems.push_back(std::move(problem));

@@ -18,7 +18,8 @@ struct MapReport {
   std::map<std::string, std::size_t> rows;  ///< of every table
 };
 
-/// Checks file, digests, schema and content. Damage is reported, not thrown: only a disk that
+/// Checks file, digests, schema, R-trees and content. The check ends at the first wrong digest.
+/// Damage is reported, not thrown: only a disk that
 /// cannot be read or a lock throws (StorageError).
 [[nodiscard]] MapReport check_map(const std::filesystem::path& path);
 

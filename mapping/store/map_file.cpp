@@ -31,11 +31,7 @@ MapMeta load_meta(const std::filesystem::path& path) {
 }
 
 std::string map_digest(const std::filesystem::path& path) {
-  const SqlDatabase database = open_map_file(path);
-  const MapDigests digests = compute_digests(database);
-  std::vector<Problem> problems = compare_digests(database, digests);
-  if (!problems.empty()) throw BadInput(std::move(problems));
-  return digests.content;
+  return verified_digests(open_map_file(path)).content;
 }
 
 }  // namespace roadbook

@@ -1,6 +1,7 @@
 #include "mapping/store/map_file_digest.hpp"
 
-#include <set>
+#include <algorithm>
+#include <array>
 
 #include "base/digest.hpp"
 #include "mapping/store/map_file_codec.hpp"
@@ -38,17 +39,22 @@ struct TableName {
   bool is_virtual = false;
 };
 
+// Tables in which an R-tree keeps its nodes. Their rows depend on the order in which the entries
+// came: their digests find damage, but are no part of the content.
+constexpr std::array kRtreeParts{"_node", "_parent", "_rowid"};
+
+bool is_rtree_part(std::string_view table) {
+  return table.starts_with("rtree_") &&
+         std::any_of(kRtreeParts.begin(), kRtreeParts.end(),
+                     [&](const char* suffix) { return table.ends_with(suffix); });
+}
+
 std::vector<TableName> tables_of(const SqlDatabase& database) {
   std::vector<TableName> tables;
-  std::set<std::string> shadows;
   SqlStatement rows = database.prepare(
       "SELECT name, sql LIKE 'CREATE VIRTUAL%' FROM sqlite_master WHERE type = 'table' "
       "AND name NOT LIKE 'sqlite\\_%' ESCAPE '\\' ORDER BY name");
   while (rows.step()) tables.push_back({rows.text(0), rows.integer(1) != 0});
-  for (const TableName& table : tables)
-    if (table.is_virtual)
-      for (const char* suffix : {"_node", "_parent", "_rowid"}) shadows.insert(table.name + suffix);
-  std::erase_if(tables, [&](const TableName& t) { return shadows.contains(t.name); });
   return tables;
 }
 
@@ -64,7 +70,9 @@ std::string query_of(const TableName& table) {
          (table.is_virtual ? " ORDER BY 1" : " ORDER BY rowid");
 }
 
-bool is_content(std::string_view table) { return table != "session_places" && table != "map_meta"; }
+bool is_content(std::string_view table) {
+  return table != "session_places" && table != "map_meta" && !is_rtree_part(table);
+}
 
 std::string content_line(const std::string& table, const std::string& digest) {
   return table + ' ' + digest + '\n';
@@ -80,26 +88,67 @@ std::string schema_digest(const SqlDatabase& database) {
       database.prepare("SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY type, name"));
 }
 
-Problem mismatch(const SqlDatabase& database, const std::string& what, const std::string& got) {
-  return {Severity::kError, database.file().string(), 0, what, got, "the digest that was stored"};
+// Computes all digests. `seen` gets each as soon as it is known, with its key in map_meta.
+template <typename Seen>
+MapDigests digests_of(const SqlDatabase& database, const Seen& seen) {
+  MapDigests digests;
+  digests.schema = schema_digest(database);
+  seen("schema_digest", digests.schema);
+  Sha256 content;
+  for (const TableName& table : tables_of(database)) {
+    const std::string digest = digest_rows(database.prepare(query_of(table)));
+    digests.tables[table.name] = digest;
+    seen("digest." + table.name, digest);
+    if (is_content(table.name)) content.update(content_line(table.name, digest));
+  }
+  content.update(meta_digest(database));
+  digests.content = content.hex();
+  return digests;
 }
+
+// The digests in map_meta, each compared once.
+class StoredDigests {
+ public:
+  explicit StoredDigests(const SqlDatabase& database) : database_(database) {
+    SqlStatement rows = database.prepare(
+        std::string("SELECT key, value FROM map_meta WHERE NOT (") + kOwnKeys + ")");
+    while (rows.step()) {
+      if (!stored_.emplace(rows.text(0), rows.text(1)).second) refuse(rows.text(0), "two digests");
+      knows_rtree_parts_ = knows_rtree_parts_ || is_rtree_part(table_of(rows.text(0)));
+    }
+  }
+  void compare(const std::string& key, const std::string& digest) {
+    const auto found = stored_.find(key);
+    if (found == stored_.end()) {
+      // Maps of earlier programs have no digests of the parts of R-trees.
+      if (!knows_rtree_parts_ && is_rtree_part(table_of(key))) return;
+      refuse(key, "no stored digest");
+    }
+    if (found->second != digest) refuse(key, "other content");
+    stored_.erase(found);
+  }
+  void refuse_others() const {
+    if (!stored_.empty()) refuse(stored_.begin()->first, "a table that is gone");
+  }
+
+ private:
+  static std::string table_of(const std::string& key) { return key.substr(key.find('.') + 1); }
+  [[noreturn]] void refuse(const std::string& key, const std::string& got) const {
+    throw BadInput(
+        {Severity::kError, database_.file().string(), 0, key, got, "the digest that was stored"});
+  }
+
+  const SqlDatabase& database_;
+  std::map<std::string, std::string> stored_;
+  bool knows_rtree_parts_ = false;
+};
 
 }  // namespace
 
 bool is_event_table(std::string_view table) { return table.ends_with("_events"); }
 
 MapDigests compute_digests(const SqlDatabase& database) {
-  MapDigests digests;
-  digests.schema = schema_digest(database);
-  Sha256 content;
-  for (const TableName& table : tables_of(database)) {
-    const std::string digest = digest_rows(database.prepare(query_of(table)));
-    digests.tables[table.name] = digest;
-    if (is_content(table.name)) content.update(content_line(table.name, digest));
-  }
-  content.update(meta_digest(database));
-  digests.content = content.hex();
-  return digests;
+  return digests_of(database, [](const std::string&, const std::string&) {});
 }
 
 void store_digests(const SqlDatabase& database, const MapDigests& digests) {
@@ -138,26 +187,14 @@ void renew_table_digest(const SqlDatabase& database, const std::string& table) {
   write("digest", content.hex());
 }
 
-std::vector<Problem> compare_digests(const SqlDatabase& database, const MapDigests& digests) {
-  std::map<std::string, std::string> want;
-  for (const auto& [table, digest] : digests.tables) want["digest." + table] = digest;
-  want["digest"] = digests.content;
-  want["schema_digest"] = digests.schema;
-
-  std::vector<Problem> problems;
-  SqlStatement rows = database.prepare(std::string("SELECT key, value FROM map_meta WHERE NOT (") +
-                                       kOwnKeys + ") ORDER BY rowid");
-  while (rows.step()) {
-    const auto entry = want.find(rows.text(0));
-    if (entry == want.end())
-      problems.push_back(mismatch(database, rows.text(0), "a table that is gone"));
-    else if (entry->second != rows.bytes(1))
-      problems.push_back(mismatch(database, entry->first, "other content"));
-    if (entry != want.end()) want.erase(entry);
-  }
-  for (const auto& [key, digest] : want)
-    problems.push_back(mismatch(database, key, "no stored digest"));
-  return problems;
+MapDigests verified_digests(const SqlDatabase& database) {
+  StoredDigests stored(database);
+  MapDigests digests = digests_of(database, [&](const std::string& key, const std::string& digest) {
+    stored.compare(key, digest);
+  });
+  stored.compare("digest", digests.content);
+  stored.refuse_others();
+  return digests;
 }
 
 }  // namespace roadbook

@@ -22,7 +22,8 @@ struct MapDigests {
   std::string content;
 };
 
-/// Digests of the present content of the file. R-trees are digested by entries, not by nodes.
+/// Digests of the present content of the file. An R-tree counts by its entries for the content. The
+/// tables of its nodes have digests of their own, as their layout depends on the file's history.
 [[nodiscard]] MapDigests compute_digests(const SqlDatabase& database);
 
 /// Writes `digests` to `map_meta` (keys `digest`, `schema_digest`, `digest.TABLE`), replacing
@@ -37,8 +38,9 @@ void renew_table_digest(const SqlDatabase& database, const std::string& table);
 /// last row covers them.
 [[nodiscard]] bool is_event_table(std::string_view table);
 
-/// One problem for each digest that is missing, superfluous or wrong.
-[[nodiscard]] std::vector<Problem> compare_digests(const SqlDatabase& database,
-                                                   const MapDigests& digests);
+/// Compares the stored digests with those of the content, and returns the latter. Throws BadInput
+/// at the first digest that is missing, superfluous or wrong: the rest of a damaged file is not
+/// read.
+[[nodiscard]] MapDigests verified_digests(const SqlDatabase& database);
 
 }  // namespace roadbook

@@ -28,6 +28,9 @@ bool is_storage_fault(int code) {
 [[noreturn]] void fail_database(sqlite3* database, int code, const std::filesystem::path& file) {
   const char* text = database != nullptr ? sqlite3_errmsg(database) : sqlite3_errstr(code);
   Problem problem{Severity::kError, file.string(), 0, "database", text, ""};
+  if ((code & 0xff) == SQLITE_INTERRUPT)
+    throw BadInput({Severity::kError, file.string(), 0, "database", "a query without end",
+                    "a map file that roadbook has written"});
   if (!is_storage_fault(code)) {
     problem.want = "an undamaged map file";
     throw BadInput(std::move(problem));
@@ -40,6 +43,12 @@ bool is_storage_fault(int code) {
 
 // Larger than any row that roadbook writes; a damaged length cannot ask for more.
 constexpr int kMaxValueBytes = 256 << 20;
+
+// Steps of SQLite's virtual machine that a statement may take. Reading a row takes a few steps a
+// column, a check of its pages some more; a byte a column is the least.
+constexpr int kStepsOfCall = 100'000;
+constexpr std::int64_t kLeastCalls = 200;
+constexpr std::int64_t kStepsOfByte = 50;
 
 // Another program that reads the map must not make a save fail.
 constexpr int kWaitForOthersMs = 5000;
@@ -126,10 +135,28 @@ SqlDatabase::SqlDatabase(std::filesystem::path file, SqlMode mode) : file_(std::
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, kMaxValueBytes);
+  if (mode == SqlMode::kRead) limit_steps();
   run("PRAGMA cell_size_check = ON");
 }
 
+void SqlDatabase::limit_steps() {
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(file_, unknown);
+  budget_ = std::make_unique<Budget>();
+  budget_->whole = kLeastCalls;
+  if (!unknown) budget_->whole += static_cast<std::int64_t>(bytes) * kStepsOfByte / kStepsOfCall;
+  budget_->left = budget_->whole;
+  const auto spend = [](void* data) { return --static_cast<Budget*>(data)->left < 0 ? 1 : 0; };
+  sqlite3_progress_handler(handle_.get(), kStepsOfCall, spend, budget_.get());
+}
+
+SqlStatement SqlDatabase::prepare(const std::string& sql) const {
+  if (budget_) budget_->left = budget_->whole;
+  return {handle_.get(), file_, sql};
+}
+
 void SqlDatabase::run(const std::string& sql) const {
+  if (budget_) budget_->left = budget_->whole;
   const int code = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) fail_database(handle_.get(), code, file_);
 }

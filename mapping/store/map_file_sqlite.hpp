@@ -60,16 +60,16 @@ class SqlStatement {
   std::filesystem::path file_;
 };
 
-/// A connection, opened defensively: untrusted schema, no schema tricks, cell sizes checked.
+/// A connection, opened defensively: untrusted schema, no schema tricks, cell sizes checked. Each
+/// statement of a connection that only reads has a number of steps that grows with the file: a
+/// query without end (a recursive view) becomes BadInput.
 class SqlDatabase {
  public:
   SqlDatabase(std::filesystem::path file, SqlMode mode);
 
   /// Executes statements that give no rows of interest.
   void run(const std::string& sql) const;
-  [[nodiscard]] SqlStatement prepare(const std::string& sql) const {
-    return {handle_.get(), file_, sql};
-  }
+  [[nodiscard]] SqlStatement prepare(const std::string& sql) const;
   /// First column of the first row; empty without rows.
   [[nodiscard]] std::string value(const std::string& sql) const;
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
@@ -79,7 +79,14 @@ class SqlDatabase {
   struct Close {
     void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
   };
+  void limit_steps();
+
   std::filesystem::path file_;
+  struct Budget {
+    std::int64_t whole = 0;  ///< calls of the progress handler that a statement may have
+    std::int64_t left = 0;
+  };
+  std::unique_ptr<Budget> budget_;  ///< outlives the connection; empty where it may write
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
