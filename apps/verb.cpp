@@ -1,12 +1,14 @@
 #include "apps/verb.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
 
 #include "apps/command_line.hpp"
+#include "base/files/disk_space.hpp"
 #include "base/text.hpp"
 
 namespace roadbook {
@@ -85,13 +87,17 @@ ExitStatus run_roadbook(const std::vector<std::string>& words) {
   try {
     const ExitStatus status = dispatch(words);
     // The error of a full disk or a closed pipe appears only at the flush.
-    if (!std::cout.flush()) throw StorageError("error: standard output: got a failed write");
+    errno = 0;
+    if (!std::cout.flush())
+      throw StorageError("error: standard output: got " +
+                         write_fault("/dev/stdout", errno == 0 ? EIO : errno));
     return status;
   } catch (const Error& error) {
     print_error(error);
     return error.status();
   } catch (const std::filesystem::filesystem_error& error) {
-    print_error(to_line({Severity::kError, error.path1().string(), 0, "", error.code().message(),
+    print_error(to_line({Severity::kError, error.path1().string(), 0, "",
+                         write_fault(error.path1(), error.code().value()),
                          "a file or folder that can be used"}));
     return ExitStatus::kStorage;
   } catch (const std::bad_alloc&) {

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 
 namespace roadbook {
 namespace {
@@ -27,8 +28,8 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
   out << text;
   out.flush();
   if (!out)
-    throw StorageError("error: " + file.string() +
-                       ": writing: got a failure, want a disk that takes it");
+    throw StorageError("error: " + file.string() + ": writing: got " + write_fault(file) +
+                       ", want a disk that takes it");
 }
 
 RegularFile::RegularFile(const std::filesystem::path& file) : fault_("no readable file") {

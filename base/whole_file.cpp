@@ -1,11 +1,13 @@
 #include "base/whole_file.hpp"
 
 #include <cctype>
+#include <cerrno>
 #include <fstream>
 #include <system_error>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 
 namespace roadbook {
 namespace {
@@ -35,15 +37,16 @@ void WholeFile::commit() {
   if (part_ == path_) return;
   std::error_code error;
   std::filesystem::rename(part_, path_, error);
-  if (error) fail(path_, error.message());
+  if (error) fail(path_, write_fault(path_, error.value()));
 }
 
 void write_whole_file(const std::filesystem::path& path, const std::string& text) {
   WholeFile output(path);
+  errno = 0;
   std::ofstream stream(output.part(), std::ios::binary | std::ios::trunc);
   stream << text;
   stream.close();
-  if (!stream) fail(path, "a failed write");
+  if (!stream) fail(path, write_fault(output.part(), errno));
   output.commit();
 }
 

@@ -1,10 +1,10 @@
 #include "drive/output_file.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 
 namespace roadbook {
 
@@ -16,13 +16,13 @@ void throw_storage_error(const fs::path& path, const std::string& what, const st
 }
 
 void throw_storage_error(const fs::path& path, const std::string& what) {
-  throw_storage_error(path, what, std::strerror(errno));
+  throw_storage_error(path, what, write_fault(path, errno));
 }
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw_storage_error(folder, "creating", error.message());
+  if (error) throw_storage_error(folder, "creating", write_fault(folder, error.value()));
 }
 
 OutputFile::OutputFile(fs::path path)

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
+#include "base/files/folder_lock.hpp"
 #include "drive/images/image_header.hpp"
 #include "drive/images/png_grey.hpp"
 #include "drive/loader.hpp"
@@ -42,11 +44,15 @@ bool belongs_to_a_drive(const std::string& name) {
          name == "camchain.yaml" || name == kVehicleFile || name == kUnfinishedMark;
 }
 
-void prepare_folder(const fs::path& folder, bool overwrite) {
+// Makes the folder, or empties it, and locks it: another writer would take the marked folder of
+// this one for broken off.
+std::unique_ptr<FolderLock> prepare_folder(const fs::path& folder, bool overwrite) {
   std::error_code error;
+  std::unique_ptr<FolderLock> lock;
   if (fs::exists(folder, error)) {
     if (!fs::is_directory(folder, error))
       throw InvalidOption("output", folder.string() + ", which is a file", "a new folder");
+    lock = std::make_unique<FolderLock>(folder);
     std::vector<fs::path> entries;
     for (const auto& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
     // What was broken off is of no use: the same command run again begins afresh.
@@ -61,6 +67,7 @@ void prepare_folder(const fs::path& folder, bool overwrite) {
     for (const auto& entry : entries) fs::remove_all(entry, error);
   }
   make_folder(folder);
+  return lock ? std::move(lock) : std::make_unique<FolderLock>(folder);
 }
 
 std::string extension_of(ImageFormat format) {
@@ -71,6 +78,7 @@ std::string extension_of(ImageFormat format) {
 
 struct DriveWriter::Impl {
   fs::path folder;
+  std::unique_ptr<FolderLock> lock;
   Rig rig;
   DriveWriterOptions options;
   // A deque keeps its elements where they are: cameras are written concurrently.
@@ -112,7 +120,7 @@ DriveWriter::DriveWriter(fs::path folder,
                          const std::optional<WheelModel>& wheels,
                          const DriveWriterOptions& options)
     : impl_(std::make_unique<Impl>()) {
-  prepare_folder(folder, options.overwrite);
+  impl_->lock = prepare_folder(folder, options.overwrite);
   impl_->folder = std::move(folder);
   impl_->rig = rig;
   impl_->options = options;
@@ -160,7 +168,7 @@ void DriveWriter::copy_image(std::size_t camera, std::int64_t t_ns, const fs::pa
   const fs::path target = impl_->folder / impl_->rig.cameras[camera].name / "data" / name;
   std::error_code error;
   if (!fs::copy_file(source, target, error))
-    throw_storage_error(target, "copying", error.message());
+    throw_storage_error(target, "copying", write_fault(target, error.value()));
   impl_->cameras[camera].row(t_ns, name);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 #include "base/parallel.hpp"
 #include "drive/writer.hpp"
 #include "sensors/pose_imperfections.hpp"
@@ -121,8 +122,8 @@ void write_range(const std::filesystem::path& out,
   range_m.convertTo(millimetres, CV_16U, 1000.0);
   const auto file = folder / (std::to_string(t_ns) + ".png");
   if (!cv::imwrite(file.string(), millimetres))
-    throw StorageError("error: " + file.string() +
-                       ": writing: got a failure, want a disk that takes it");
+    throw StorageError("error: " + file.string() + ": writing: got " + write_fault(file) +
+                       ", want a disk that takes it");
 }
 
 // The reference poses are the poses that a map gives. A map that is scaled or bent makes them wrong

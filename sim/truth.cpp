@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 #include "base/text_file.hpp"
 #include "sim/streams/friction_stream.hpp"
 #include "sim/streams/sensor_streams.hpp"
@@ -163,9 +164,10 @@ void write_truth_folder(const std::filesystem::path& drive,
       rows += line;
     }
   write_text(folder / "pedestrians.csv", rows);
-  if (!cv::imwrite((folder / "ground_kind.png").string(), world.paint.kind.image))
-    throw StorageError("error: " + (folder / "ground_kind.png").string() +
-                       ": writing: got a failure, want a disk that takes it");
+  const auto ground = folder / "ground_kind.png";
+  if (!cv::imwrite(ground.string(), world.paint.kind.image))
+    throw StorageError("error: " + ground.string() + ": writing: got " + write_fault(ground) +
+                       ", want a disk that takes it");
 }
 
 }  // namespace roadbook

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
+#include "base/files/disk_space.hpp"
 #include "base/text.hpp"
 #include "base/text_file.hpp"
 #include "base/whole_file.hpp"
@@ -56,8 +57,9 @@ std::vector<std::filesystem::path> write_overhead_picture(const MapLayers& layer
   cv::extractChannel(layers.read_raster("overhead", {0, 0, place.width, place.height}), grey, 0);
   WholeFile picture(png);
   if (!cv::imwrite(picture.part().string(), grey))
-    throw StorageError(to_line({Severity::kError, png.string(), 0, "output", "a failed write",
-                                "a writable place with room on its disk"}));
+    throw StorageError(
+        to_line({Severity::kError, png.string(), 0, "output", write_fault(picture.part()),
+                 "a writable place with room on its disk"}));
   picture.commit();
   // Pixel sizes and turns, then the middle of the first pixel.
   std::ostringstream text;

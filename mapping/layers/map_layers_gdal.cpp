@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 
 namespace roadbook {
 namespace {
@@ -44,7 +45,10 @@ void GdalScope::check(const std::filesystem::path& file, const std::string& what
 
 void GdalScope::require(bool ok, const std::filesystem::path& file, const std::string& what) const {
   if (ok && fault_.empty()) return;
-  const std::string got = fault_.empty() ? "no reason from GDAL" : fault_;
+  const std::string disk = write_fault(file);
+  const std::string got = disk.starts_with("no space") ? disk
+                          : fault_.empty()             ? "no reason from GDAL"
+                                                       : fault_;
   throw StorageError(to_line(
       {Severity::kError, file.string(), 0, what, got, "a writable file with room on its disk"}));
 }

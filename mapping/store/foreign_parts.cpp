@@ -10,8 +10,9 @@
 namespace roadbook {
 namespace {
 
-// Beginnings of the names of triggers; the name of the table that they watch follows.
-constexpr std::array kTriggers{"rtree_", "trigger_insert_feature_count_",
+// Beginnings of the names of triggers; the name of the table that they watch follows. Those of a
+// raster's tiles begin with the table: overhead_zoom_insert.
+constexpr std::array kTriggers{"", "rtree_", "trigger_insert_feature_count_",
                                "trigger_delete_feature_count_"};
 // GeoPackage's triggers have single statements on single rows. These words begin others.
 constexpr std::array kForeignWords{"WITH", "RECURSIVE", "JOIN", "UNION", "INSTEAD"};
@@ -32,7 +33,6 @@ bool is_known_trigger(const std::string& name, const std::string& table, std::st
   if (std::any_of(kForeignWords.begin(), kForeignWords.end(),
                   [&](const char* word) { return has_word(sql, word); }))
     return false;
-  if (table == "gpkg_tile_matrix") return name.starts_with("gpkg_tile_matrix_");
   return std::any_of(kTriggers.begin(), kTriggers.end(),
                      [&](const char* begin) { return name.starts_with(begin + table); });
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 #include "mapping/layers/map_layers_poses.hpp"
 #include "mapping/layers/map_layers_vector.hpp"
@@ -85,8 +86,8 @@ void copy_map_file(const std::filesystem::path& map, const std::filesystem::path
   std::error_code error;
   std::filesystem::copy_file(map, file, error);
   if (error)
-    throw StorageError(
-        to_line({Severity::kError, file.string(), 0, "copy", error.message(), "room on its disk"}));
+    throw StorageError(to_line({Severity::kError, file.string(), 0, "copy",
+                                write_fault(file, error.value()), "room on its disk"}));
 }
 
 }  // namespace roadbook

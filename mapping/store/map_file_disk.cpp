@@ -4,29 +4,27 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <system_error>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
 
 namespace roadbook {
 namespace {
 
-[[noreturn]] void fail_disk(const std::filesystem::path& file,
-                            const char* field,
-                            const std::string& got) {
-  throw StorageError(
-      to_line({Severity::kError, file.string(), 0, field, got, "a disk that takes the file"}));
+[[noreturn]] void fail_disk(const std::filesystem::path& file, const char* field, int error) {
+  throw StorageError(to_line({Severity::kError, file.string(), 0, field, write_fault(file, error),
+                              "a disk that takes the file"}));
 }
 
 void sync_path(const std::filesystem::path& path, int flags) {
   const int descriptor = open(path.c_str(), flags | O_CLOEXEC);
-  if (descriptor < 0) fail_disk(path, "open", std::strerror(errno));
+  if (descriptor < 0) fail_disk(path, "open", errno);
   const int code = fsync(descriptor);
   const int fault = errno;
   close(descriptor);
-  if (code != 0) fail_disk(path, "fsync", std::strerror(fault));
+  if (code != 0) fail_disk(path, "fsync", fault);
 }
 
 std::filesystem::path journal_of(const std::filesystem::path& file) {
@@ -40,7 +38,7 @@ std::filesystem::path linked_file(std::filesystem::path path) {
   std::error_code error;
   for (int i = 0; std::filesystem::is_symlink(path, error); ++i) {
     const auto target = std::filesystem::read_symlink(path, error);
-    if (error || i == kMostLinks) fail_disk(path, "link", "links in a circle");
+    if (error || i == kMostLinks) fail_disk(path, "link", ELOOP);
     path = path.parent_path() / target;
   }
   return path;
@@ -50,7 +48,7 @@ void remove_database(const std::filesystem::path& file) {
   for (const std::filesystem::path& path : {file, journal_of(file)}) {
     std::error_code error;
     std::filesystem::remove(path, error);
-    if (error) fail_disk(path, "remove", error.message());
+    if (error) fail_disk(path, "remove", error.value());
   }
 }
 
@@ -60,7 +58,7 @@ void replace_file(const std::filesystem::path& file, const std::filesystem::path
   recover_database(target);
   std::error_code error;
   std::filesystem::rename(file, target, error);
-  if (error) fail_disk(target, "rename", error.message());
+  if (error) fail_disk(target, "rename", error.value());
   const std::filesystem::path folder = target.parent_path();
   sync_path(folder.empty() ? std::filesystem::path(".") : folder, O_RDONLY | O_DIRECTORY);
 }

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "mapping/store/lock_holder.hpp"
+#include "base/files/lock_holder.hpp"
 #include "mapping/store/map_file_disk.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
 

@@ -1,8 +1,10 @@
 #include "mapping/store/map_file_sqlite.hpp"
 
+#include <cerrno>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 #include "base/text_file.hpp"
 
 namespace roadbook {
@@ -35,6 +37,10 @@ bool is_storage_fault(int code) {
     problem.want = "an undamaged map file";
     throw BadInput(std::move(problem));
   }
+  const bool failed_write = (code & 0xff) == SQLITE_FULL || (code & 0xff) == SQLITE_IOERR;
+  if (const std::string fault = write_fault(file, (code & 0xff) == SQLITE_FULL ? ENOSPC : 0);
+      failed_write && fault.starts_with("no space"))
+    problem.got = fault;
   problem.want = (code & 0xff) == SQLITE_BUSY
                      ? "a map that no other process is writing"
                      : "a readable and writable file with room on its disk";

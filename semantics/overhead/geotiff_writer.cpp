@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 #include "mapping/layers/map_layers.hpp"
 
 namespace roadbook {
@@ -31,7 +32,9 @@ GDALDataType gdal_type(PixelType type) {
 }
 
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
-  throw StorageError("error: " + path.string() + ": " + what + ": got " + CPLGetLastErrorMsg() +
+  const std::string disk = write_fault(path);
+  throw StorageError("error: " + path.string() + ": " + what + ": got " +
+                     (disk.starts_with("no space") ? disk : CPLGetLastErrorMsg()) +
                      ", want a disk that takes it");
 }
 

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 
 namespace roadbook {
 namespace {
@@ -218,8 +219,8 @@ void MosaicTile::save(const std::filesystem::path& path) const {
   for (const auto* ids : {&best_, &first_, &last_}) write_all(out, *ids);
   out.close();
   if (!out)
-    throw StorageError("error: " + path.string() +
-                       ": writing: got a failure, want a disk that takes it");
+    throw StorageError("error: " + path.string() + ": writing: got " + write_fault(path) +
+                       ", want a disk that takes it");
 }
 
 void MosaicTile::load(const std::filesystem::path& path) {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 
 namespace roadbook {
 namespace {
@@ -52,8 +53,8 @@ std::string ranges(const std::vector<std::uint32_t>& frames) {
 void close(std::ofstream* file, const std::filesystem::path& path) {
   file->close();
   if (!*file)
-    throw StorageError("error: " + path.string() +
-                       ": writing: got a failure, want a disk that takes it");
+    throw StorageError("error: " + path.string() + ": writing: got " + write_fault(path) +
+                       ", want a disk that takes it");
 }
 
 void write_tables(const OverheadSummary& summary) {

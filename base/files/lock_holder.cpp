@@ -1,4 +1,4 @@
-#include "mapping/store/lock_holder.hpp"
+#include "base/files/lock_holder.hpp"
 
 #include <sys/stat.h>
 
@@ -29,7 +29,8 @@ std::string command_of(const std::string& pid) {
   return text;
 }
 
-// Returns the process of a line of /proc/locks that locks `inode` as SQLite does; empty otherwise.
+// Returns the process of a line of /proc/locks that locks `inode` as SQLite or FolderLock does;
+// empty otherwise.
 // `1: POSIX  ADVISORY  WRITE 1234 08:01:5678 1073741824 1073742335`. Lines with "->" only wait.
 std::string process_of(const std::string& line, ino_t inode) {
   std::istringstream words(line);
@@ -42,9 +43,9 @@ std::string process_of(const std::string& line, ino_t inode) {
   std::string begin;
   words >> number >> kind >> advice >> mode >> pid >> place >> begin;
   const std::size_t colon = place.rfind(':');
-  if (kind != "POSIX" || colon == std::string::npos) return {};
-  if (place.substr(colon + 1) != std::to_string(inode)) return {};
-  return parse_int(begin).value_or(0) >= kSqliteLockBegin ? pid : std::string();
+  if (colon == std::string::npos || place.substr(colon + 1) != std::to_string(inode)) return {};
+  if (kind == "FLOCK") return pid;
+  return kind == "POSIX" && parse_int(begin).value_or(0) >= kSqliteLockBegin ? pid : std::string();
 }
 
 }  // namespace
