@@ -80,6 +80,8 @@ RoadsResult find_roads(const RoadsRequest& request, const Messages& messages) {
   if (!links.empty()) write_link_table(update, links);
   const auto carry = carry_friction(update, layers, map, paths);
   const bool stale = !speeds_fit(layers, paths);
+  update.note("roads", std::to_string(network.lanes.size()) + " lanes, " +
+                           std::to_string(network.intersections.size()) + " intersections");
   update.commit();
   return {network, summary_of(paths), links.size(), static_cast<std::size_t>(linked), carry, stale};
 }

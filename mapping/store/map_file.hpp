@@ -64,10 +64,11 @@ class MapUpdate {
   /// Where the drives of the sessions are now, in their order, relative to the map's folder where
   /// possible. Not part of the content digest.
   void set_drive_paths(const std::vector<std::string>& paths);
-  /// A line in the history of the map.
+  /// A line in the history of the map, which `commit` adds if anything has changed.
   void note(const std::string& action, const std::string& detail);
 
-  /// Digests, syncs and renames over MAP. The update must not be used afterwards.
+  /// Digests, syncs and renames over MAP. An update that changed nothing leaves MAP as it is, to
+  /// the byte. The update must not be used afterwards.
   void commit();
 
  private:

@@ -12,6 +12,7 @@
 #include "mapping/store/map_file_disk.hpp"
 #include "mapping/store/map_file_lock.hpp"
 #include "mapping/store/map_file_open.hpp"
+#include "mapping/store/map_file_seal.hpp"
 
 namespace roadbook {
 namespace {

@@ -88,6 +88,23 @@ std::string schema_digest(const SqlDatabase& database) {
       database.prepare("SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY type, name"));
 }
 
+std::string meta_value_of(const SqlDatabase& database, const std::string& key) {
+  SqlStatement row = database.prepare("SELECT value FROM map_meta WHERE key = ?");
+  row.bind_text(1, key);
+  return row.step() ? row.text(0) : std::string{};
+}
+
+bool is_registry(std::string_view table) { return table.starts_with("gpkg_"); }
+
+// The digest of a table whose rows are taken in the order of their values.
+std::string sorted_digest(const SqlDatabase& database, const TableName& table) {
+  std::string order;
+  const int columns = database.prepare(query_of(table)).columns();
+  for (int c = 1; c <= columns; ++c) order += (c == 1 ? "" : ", ") + std::to_string(c);
+  return digest_rows(
+      database.prepare("SELECT * FROM " + sql_name(table.name) + " ORDER BY " + order));
+}
+
 // Computes all digests. `seen` gets each as soon as it is known, with its key in map_meta.
 template <typename Seen>
 MapDigests digests_of(const SqlDatabase& database, const Seen& seen) {
@@ -160,6 +177,26 @@ void store_digests(const SqlDatabase& database, const MapDigests& digests) {
     const std::string key = "digest." + table;
     insert.bind_text(1, key).bind_text(2, digest).run();
   }
+}
+
+bool have_same_content(const SqlDatabase& file,
+                       const SqlDatabase& copy,
+                       const MapDigests& digests) {
+  const auto tables = tables_of(file);
+  const auto parts = std::count_if(tables.begin(), tables.end(),
+                                   [](const TableName& t) { return is_rtree_part(t.name); });
+  const auto now_parts = std::count_if(digests.tables.begin(), digests.tables.end(),
+                                       [](const auto& t) { return is_rtree_part(t.first); });
+  if (parts != now_parts || tables.size() != digests.tables.size() ||
+      meta_value_of(file, "schema_digest") != digests.schema)
+    return false;
+  return std::all_of(tables.begin(), tables.end(), [&](const TableName& table) {
+    const auto now = digests.tables.find(table.name);
+    if (now == digests.tables.end()) return false;
+    if (is_rtree_part(table.name) || meta_value_of(file, "digest." + table.name) == now->second)
+      return true;
+    return is_registry(table.name) && sorted_digest(file, table) == sorted_digest(copy, table);
+  });
 }
 
 void renew_table_digest(const SqlDatabase& database, const std::string& table) {

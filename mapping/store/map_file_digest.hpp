@@ -30,6 +30,13 @@ struct MapDigests {
 /// older.
 void store_digests(const SqlDatabase& database, const MapDigests& digests);
 
+/// Whether a file and its copy, which has `digests`, have the same content. GeoPackage's own tables
+/// list the layers in the order in which they were written; here the order does not count. Compares
+/// also what does not belong to the content digest: places on this machine.
+[[nodiscard]] bool have_same_content(const SqlDatabase& file,
+                                     const SqlDatabase& copy,
+                                     const MapDigests& digests);
+
 /// Digests of one table and of the content, after a change of that table alone; the others' are
 /// taken as stored.
 void renew_table_digest(const SqlDatabase& database, const std::string& table);

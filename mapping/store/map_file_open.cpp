@@ -8,8 +8,6 @@
 #include <mutex>
 
 #include "base/text.hpp"
-#include "mapping/layers/layer_styles.hpp"
-#include "mapping/layers/map_layers_vector.hpp"
 #include "mapping/store/foreign_parts.hpp"
 #include "mapping/store/map_file_disk.hpp"
 #include "mapping/store/map_file_tables.hpp"
@@ -139,20 +137,6 @@ void add_audit(const SqlDatabase& database, const std::string& action, const std
       .bind_text(1, action)
       .bind_text(2, detail)
       .run();
-}
-
-void seal_map_file(const std::filesystem::path& path) {
-  const SqlDatabase database(path, SqlMode::kReadWrite);
-  SqlTransaction transaction(database);
-  unite_map_frames(database);
-  write_layer_styles(database, utc_text(newest_session_ns(database)));
-  set_meta_value(database, "schema_version", std::to_string(kMapSchemaVersion));
-  set_meta_value(database, "state", "complete");
-  store_digests(database, compute_digests(database));
-  transaction.commit();
-  const std::string fault = database.value("PRAGMA quick_check(1)");
-  if (fault != "ok")
-    throw StorageError(to_line({Severity::kError, path.string(), 0, "quick_check", fault, "ok"}));
 }
 
 std::int64_t newest_session_ns(const SqlDatabase& database) {

@@ -32,10 +32,6 @@ void set_meta_value(const SqlDatabase& database, const std::string& key, const s
 /// A line in the history (`audit`).
 void add_audit(const SqlDatabase& database, const std::string& action, const std::string& detail);
 
-/// Declares the file complete: styles of its layers, state, digests, SQLite's own check. The last
-/// change to a file.
-void seal_map_file(const std::filesystem::path& path);
-
 /// Stamp of the newest session's end [ns]; 0 without sessions.
 [[nodiscard]] std::int64_t newest_session_ns(const SqlDatabase& database);
 

@@ -12,6 +12,7 @@
 #include "mapping/store/map_file_disk.hpp"
 #include "mapping/store/map_file_lock.hpp"
 #include "mapping/store/map_file_open.hpp"
+#include "mapping/store/map_file_seal.hpp"
 #include "mapping/store/map_file_tables.hpp"
 
 namespace roadbook {
@@ -39,6 +40,7 @@ struct MapUpdate::Impl {
   MapLock lock;
   std::filesystem::path copy;
   std::string content_time;
+  std::vector<AuditLine> lines;  ///< for the history, if anything changes
 };
 
 MapUpdate::MapUpdate(const std::filesystem::path& map) : impl_(std::make_unique<Impl>(map)) {}
@@ -109,12 +111,14 @@ void MapUpdate::set_drive_paths(const std::vector<std::string>& paths) {
 }
 
 void MapUpdate::note(const std::string& action, const std::string& detail) {
-  add_audit(impl_->database(), action, detail);
+  impl_->lines.emplace_back(action, detail);
 }
 
 void MapUpdate::commit() {
-  seal_map_file(impl_->copy);
-  replace_file(impl_->copy, impl_->map);
+  if (seal_changed_copy(impl_->copy, impl_->map, impl_->lines))
+    replace_file(impl_->copy, impl_->map);
+  else
+    remove_database(impl_->copy);
   impl_.reset();
 }
 

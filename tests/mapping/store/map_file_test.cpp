@@ -10,6 +10,7 @@
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_open.hpp"
+#include "mapping/store/map_file_seal.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
