@@ -1,5 +1,7 @@
 #include "mapping/store/map_file_lock.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <map>
@@ -105,7 +107,9 @@ class HeldMaps {
  public:
   std::shared_ptr<HeldMap> hold(const std::filesystem::path& map, bool for_work) {
     const std::filesystem::path part = beside(map, ".part");
-    const std::string key = std::filesystem::weakly_canonical(part).string();
+    // A forked process does not hold what its parent holds.
+    const std::string key =
+        std::to_string(getpid()) + " " + std::filesystem::weakly_canonical(part).string();
     const std::lock_guard lock(mutex_);
     std::shared_ptr<HeldMap> held = maps_[key].lock();
     if (held && for_work && held->in_work) refuse_held(part, "this process");

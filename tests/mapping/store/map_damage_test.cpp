@@ -7,6 +7,8 @@
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
+#include "mapping/store/map_file_seal.hpp"
+#include "mapping/store/map_file_sqlite.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
 namespace roadbook {
@@ -91,6 +93,107 @@ TEST(MapDamage, IsFoundWhereverTheContentChanged) {
   }
   // Changes of bytes that no table uses are harmless, but most bytes are in use.
   EXPECT_GT(refused, 200);
+}
+
+// Bytes of the pages that hold content, found by changing each to another value: the rest of a file
+// is header fields and room between rows, which SQLite may fill with anything.
+TEST(MapDamage, EveryChangedByteOfAnRtreeIsFound) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapFileBuilder(path, "key").finish(small_map(5, {.landmarks = 400}), {});
+  const std::string good = read_bytes(path);
+  std::size_t found = 0;
+  std::vector<std::string> nodes;
+  {
+    const SqlDatabase database(path, SqlMode::kRead);
+    SqlStatement rows = database.prepare("SELECT data FROM rtree_landmark_points_geom_node");
+    while (rows.step()) nodes.push_back(rows.text(0));
+  }
+  ASSERT_GT(nodes.size(), 3U);  // a root with inner bounds, not one leaf
+  Random random(7, "rtree");
+  constexpr int kChanges = 60;
+  for (int i = 0; i < kChanges; ++i) {
+    // A node of this size spills over pages: its first part is looked for.
+    const std::string node = nodes[random.below(nodes.size())].substr(0, 60);
+    const std::size_t at = good.find(node);
+    if (at == std::string::npos) continue;
+    std::string bad = good;
+    const std::size_t byte = at + random.below(node.size());
+    bad[byte] = static_cast<char>(bad[byte] ^ static_cast<char>(1 + random.below(255)));
+    write_bytes(path, bad);
+    EXPECT_FALSE(check_map(path).problems.empty()) << byte;
+    ++found;
+  }
+  EXPECT_EQ(found, kChanges);
+}
+
+// Whoever computes the digests again has a map that fits them, but not itself.
+TEST(MapDamage, AnRtreeWithOtherBoundsThanItsFeaturesIsFound) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  const auto problem_after = [&](const std::string& sql) {
+    std::filesystem::remove(path);
+    MapFileBuilder(path, "key").finish(small_map(5), {});
+    SqlDatabase(path, SqlMode::kReadWrite).run(sql);
+    seal_map_file(path);
+    const auto problems = check_map(path).problems;
+    return problems.empty() ? std::string() : problems.front().field + " " + problems.front().got;
+  };
+  const std::string tree = "rtree_landmark_points_geom";
+  EXPECT_EQ(problem_after("SELECT 1"), "");
+  EXPECT_EQ(problem_after("UPDATE " + tree + " SET maxx = maxx + 0.5 WHERE id = 3"),
+            tree + " other bounds than feature 3");
+  EXPECT_EQ(problem_after("DELETE FROM " + tree + " WHERE id = 3"),
+            tree + " no entry of feature 3");
+  EXPECT_EQ(problem_after("INSERT INTO " + tree + " VALUES(9999, 0, 1, 0, 1)"),
+            tree + " entries of no feature");
+}
+
+// A view without end in the place of a table, and a trigger without end, with digests that fit.
+TEST(MapDamage, ForeignViewsAndTriggersAreRefusedAtOnce) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  const std::string endless =
+      "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT count(*) FROM n";
+  for (const std::string& sql :
+       {"CREATE VIEW extra AS " + endless,
+        "DROP TABLE landmarks; CREATE VIEW landmarks AS " + endless,
+        "CREATE TRIGGER rtree_poses_geom_update9 AFTER UPDATE ON poses BEGIN INSERT INTO audit "
+        "SELECT 1, 'a', 'b' FROM (" +
+            endless + "); END",
+        std::string("CREATE TRIGGER mine AFTER INSERT ON audit BEGIN DELETE FROM audit; END")}) {
+    std::filesystem::remove(path);
+    MapFileBuilder(path, "key").finish(small_map(5), {});
+    SqlDatabase(path, SqlMode::kReadWrite).run(sql);
+    const MapReport report = check_map(path);
+    ASSERT_EQ(report.problems.size(), 1U) << sql;
+    EXPECT_EQ(report.problems.front().field, "schema") << sql;
+    EXPECT_THROW((void)load_map(path), BadInput) << sql;
+    EXPECT_THROW(MapUpdate{path}, BadInput) << sql;
+  }
+}
+
+TEST(MapDamage, AQueryWithoutEndIsBadInput) {
+  const Folder folder;
+  MapFileBuilder(folder / "a.gpkg", "key").finish(small_map(5), {});
+  const SqlDatabase database(folder / "a.gpkg", SqlMode::kRead);
+  EXPECT_THROW(
+      (void)database.value("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
+                           "SELECT count(*) FROM n"),
+      BadInput);
+  EXPECT_EQ(database.value("SELECT count(*) FROM sessions"), "2");  // each statement begins anew
+}
+
+TEST(MapDamage, ACheckEndsAtTheFirstWrongDigest) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapFileBuilder(path, "key").finish(small_map(5), {});
+  SqlDatabase(path, SqlMode::kReadWrite)
+      .run("UPDATE keyframes SET t_ns = 1; UPDATE landmarks SET x = 7.0");
+  const MapReport report = check_map(path);
+  ASSERT_EQ(report.problems.size(), 1U);
+  EXPECT_EQ(report.problems.front().field, "digest.keyframes");
+  EXPECT_EQ(report.digest, "");
 }
 
 TEST(MapDamage, LayersAndMetaAreCovered) {
