@@ -5,6 +5,7 @@
 #include "exchange/export/picture_edge.hpp"
 #include "mapping/layers/map_layers.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_reading.hpp"
 #include "semantics/labels/label_classes.hpp"
 #include "semantics/labels/label_drives.hpp"
 #include "semantics/labels/label_layers.hpp"
@@ -43,12 +44,14 @@ std::vector<Problem> labels_without_place(const ExportRequest& request) {
 }
 
 ExportResult export_place(const ExportRequest& request) {
+  const MapReading reading(request.map);
   ExportResult result;
   result.files =
       export_map(request.map, request.format, request.output, request.options, &result.left_out);
   result.warnings = warnings_of_picture_edge(request.map, request.format);
   if (request.format == "gpkg" || request.format == "geojson")
     result.rasters_left_out = rasters_of(request.map);
+  reading.require_same_map();
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drive/drive.hpp"
+#include "mapping/store/map_reading.hpp"
 #include "workflows/drive_images.hpp"
 #include "workflows/driven_passes.hpp"
 #include "workflows/session_drives.hpp"
@@ -44,6 +45,7 @@ std::vector<std::optional<Drive>> drives_of(const ReportData& data) {
 ReportData collect_report(const std::filesystem::path& map_file,
                           const std::filesystem::path& before,
                           bool look_again) {
+  const MapReading reading(map_file);
   ReportData data;
   data.file = map_file;
   data.map = load_map(map_file);
@@ -58,6 +60,7 @@ ReportData collect_report(const std::filesystem::path& map_file,
   const auto drives = look_again ? drives_of(data) : std::vector<std::optional<Drive>>();
   const auto images = look_again ? images_of_drives(&data.map, &drives) : KeyframeImages();
   data.labels = collect_labels(map_file, data.map, before, images);
+  reading.require_same_map();
   if (data.network)
     (void)build_road_network(driven_passes(data.map), {}, nullptr, &data.stages_of_network);
   return data;
