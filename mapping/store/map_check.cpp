@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "mapping/store/file_digest.hpp"
 #include "mapping/store/map_event_log.hpp"
 #include "mapping/store/map_file_digest.hpp"
 #include "mapping/store/map_file_open.hpp"
@@ -174,6 +175,9 @@ MapReport check_map(const std::filesystem::path& path) {
     const std::string fault = database.value("PRAGMA integrity_check(1)");
     if (fault != "ok") refuse_file(path, "integrity_check", fault, "ok");
     const MapDigests digests = verified_digests(database);
+    if (!has_sealed_bytes(path, meta_value(database, kFileDigestKey)))
+      refuse_file(path, kFileDigestKey, "other bytes between the rows",
+                  "the bytes that were sealed");
     count_rows(database, digests, report);
     for (Problem& problem : event_log_problems(database))
       report.problems.push_back(std::move(problem));

@@ -1,6 +1,7 @@
 #include "mapping/store/map_file.hpp"
 
 #include "base/text.hpp"
+#include "mapping/store/file_digest.hpp"
 #include "mapping/store/map_file_open.hpp"
 #include "mapping/store/map_file_tables.hpp"
 
@@ -23,7 +24,7 @@ MapMeta load_meta(const std::filesystem::path& path) {
       meta.digest = rows.text(1);
     } else if (key.starts_with(kDigest)) {
       meta.table_digests[key.substr(kDigest.size())] = rows.text(1);
-    } else if (key != "schema_digest") {
+    } else if (key != "schema_digest" && key != kFileDigestKey) {
       meta.values[key] = rows.text(1);
     }
   }

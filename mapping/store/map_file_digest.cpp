@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/digest.hpp"
+#include "mapping/store/file_digest.hpp"
 #include "mapping/store/map_file_codec.hpp"
 
 namespace roadbook {
@@ -127,8 +128,9 @@ MapDigests digests_of(const SqlDatabase& database, const Seen& seen) {
 class StoredDigests {
  public:
   explicit StoredDigests(const SqlDatabase& database) : database_(database) {
-    SqlStatement rows = database.prepare(
-        std::string("SELECT key, value FROM map_meta WHERE NOT (") + kOwnKeys + ")");
+    SqlStatement rows =
+        database.prepare(std::string("SELECT key, value FROM map_meta WHERE key != '") +
+                         kFileDigestKey + "' AND NOT (" + kOwnKeys + ")");
     while (rows.step()) {
       if (!stored_.emplace(rows.text(0), rows.text(1)).second) refuse(rows.text(0), "two digests");
       knows_rtree_parts_ = knows_rtree_parts_ || is_rtree_part(table_of(rows.text(0)));
@@ -222,6 +224,7 @@ void renew_table_digest(const SqlDatabase& database, const std::string& table) {
     if (is_content(name)) content.update(content_line(name, digest));
   content.update(meta_digest(database));
   write("digest", content.hex());
+  database.prepare("DELETE FROM map_meta WHERE key = ?").bind_text(1, kFileDigestKey).run();
 }
 
 MapDigests verified_digests(const SqlDatabase& database) {

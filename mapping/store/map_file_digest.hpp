@@ -38,7 +38,7 @@ void store_digests(const SqlDatabase& database, const MapDigests& digests);
                                      const MapDigests& digests);
 
 /// Digests of one table and of the content, after a change of that table alone; the others' are
-/// taken as stored.
+/// taken as stored. The digest of the file's bytes is dropped.
 void renew_table_digest(const SqlDatabase& database, const std::string& table);
 
 /// Tables `..._events` only grow, each row with the digest of all rows before it (MapEventLog): the
