@@ -3,6 +3,7 @@
 #include "apps/summaries/map_summary.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
+#include "mapping/store/map_file_lock.hpp"
 
 namespace roadbook {
 
@@ -27,6 +28,7 @@ Verb map_verb() {
       [=](Console& console, const CommonOptions& common) {
         command->options.num_threads = common.threads;
         if (*solver == "ceres") command->options.bundle.bundle.solver = LeastSquaresSolver::kCeres;
+        const MapHold hold(command->map);  // until the map also has the summary of this run
         print_map(console, map_drives(*command, console), command->map);
         return ExitStatus::kDone;
       }};
