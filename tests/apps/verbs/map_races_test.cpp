@@ -14,8 +14,8 @@
 #include "tests/apps/running_program.hpp"
 
 // Two commands that write one map. The first is held (SIGSTOP) at a moment of its run, the second
-// runs to its end, the first goes on. Each has its whole effect, or is refused: nothing is lost or
-// mixed. ROADBOOK_RACES sets the number of moments; the short test tries a few.
+// runs to its end, the first continues. Each has its whole effect, or is refused: nothing is lost
+// or mixed. ROADBOOK_RACES sets the number of moments; the short test tries a few.
 
 namespace roadbook {
 namespace {
@@ -158,7 +158,8 @@ TEST_P(RaceWithAnotherMap, LeavesNoLayerOfTheOneInTheOther) {
       expect_refused_by_lock(made.other);
       EXPECT_EQ(made.held.status, 0) << made.held.err;
     }
-    // The verb finds the map of b if that was replaced before it began; it may lack what it needs.
+    // If the map was replaced before the verb locked it, the map of b may lack a layer for the
+    // verb.
     EXPECT_TRUE(made.held.status == 0 || made.held.status == 2) << made.held.err;
     const std::set<std::string> want{made.other.status == 0 ? "b" : "a"};
     EXPECT_EQ(sessions_of(folder / "m.gpkg"), want);

@@ -200,9 +200,8 @@ TEST_F(MapGivenAgain, KeepsAllLayersWhereThePosesComeOutTheSame) {
   EXPECT_EQ(test::run_command("roadbook check place.gpkg", folder_.path()).status, 0);
 }
 
-// An unfinished build of other drives does not belong to this map, so the command keeps it. That a
-// finished build is done, whose checkpoints a kill has left, stands in map_races_test.cpp.
-TEST_F(MapGivenAgain, ABuildOfOtherDrivesGoesOnWaiting) {
+// An unfinished build of other drives does not belong to this map, so the command keeps it.
+TEST_F(MapGivenAgain, ABuildOfOtherDrivesStays) {
   { const MapFileBuilder waiting(map_, "other drives"); }
   EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), true);
   EXPECT_TRUE(fs::exists(folder_.path() / "place.gpkg.part"));

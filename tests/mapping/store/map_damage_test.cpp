@@ -147,7 +147,7 @@ TEST(MapDamage, EveryChangedByteOfAnRtreeIsFound) {
   EXPECT_EQ(found, kChanges);
 }
 
-// Whoever computes the digests again has a map that fits them, but not itself.
+// A program may change an R-tree and compute all digests again.
 TEST(MapDamage, AnRtreeWithOtherBoundsThanItsFeaturesIsFound) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
@@ -201,7 +201,8 @@ TEST(MapDamage, AQueryWithoutEndIsBadInput) {
       (void)database.value("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
                            "SELECT count(*) FROM n"),
       BadInput);
-  EXPECT_EQ(database.value("SELECT count(*) FROM sessions"), "2");  // each statement begins anew
+  EXPECT_EQ(database.value("SELECT count(*) FROM sessions"),
+            "2");  // each statement has its own limit
 }
 
 TEST(MapDamage, ACheckEndsAtTheFirstWrongDigest) {

@@ -107,7 +107,7 @@ TEST(MapLock, IsOneUnderAllNamesAndALinkStaysALink) {
   const auto far = folder / "elsewhere/far.gpkg";
   std::filesystem::create_symlink("a.gpkg", link);
   std::filesystem::create_symlink("../link.gpkg", far);
-  MapFileBuilder(far, "key").finish(small_map(1), {});  // what the link names is still to come
+  MapFileBuilder(far, "key").finish(small_map(1), {});  // the target of the link does not exist yet
   for (const auto& [held, other] : {std::pair{map, far}, {far, link}, {link, map}}) {
     const MapHold hold(held);
     EXPECT_NE(refusal_elsewhere([&, path = other] { MapUpdate update(path); }), "");
