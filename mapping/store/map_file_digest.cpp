@@ -95,15 +95,16 @@ std::string meta_value_of(const SqlDatabase& database, const std::string& key) {
   return row.step() ? row.text(0) : std::string{};
 }
 
-bool is_registry(std::string_view table) { return table.starts_with("gpkg_"); }
+bool is_registry(std::string_view table) {
+  return table.starts_with("gpkg_") || table == "map_meta";
+}
 
 // The digest of a table whose rows are taken in the order of their values.
 std::string sorted_digest(const SqlDatabase& database, const TableName& table) {
   std::string order;
   const int columns = database.prepare(query_of(table)).columns();
   for (int c = 1; c <= columns; ++c) order += (c == 1 ? "" : ", ") + std::to_string(c);
-  return digest_rows(
-      database.prepare("SELECT * FROM " + sql_name(table.name) + " ORDER BY " + order));
+  return digest_rows(database.prepare("SELECT * FROM (" + query_of(table) + ") ORDER BY " + order));
 }
 
 // Computes all digests. `seen` gets each as soon as it is known, with its key in map_meta.
