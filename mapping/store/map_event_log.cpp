@@ -5,7 +5,9 @@
 #include "base/digest.hpp"
 #include "mapping/layers/map_layers_table.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_content.hpp"
 #include "mapping/store/map_file_digest.hpp"
+#include "mapping/store/map_file_disk.hpp"
 #include "mapping/store/map_file_lock.hpp"
 #include "mapping/store/map_file_open.hpp"
 
@@ -82,9 +84,14 @@ struct MapEventLog::Impl {
   // Verifies the map, and adds the table if it is missing. Events go into the file in place: a file
   // of several names (hard links) is copied first, so that each name has its own lock and log.
   static void begin(const std::filesystem::path& map, const std::string& table) {
-    if (std::filesystem::hard_link_count(map) == 1 && has_table(open_verified(map), table)) return;
+    if (std::filesystem::hard_link_count(map) > 1) {
+      const std::filesystem::path copy = beside(map, ".new");
+      copy_map_file(map, copy);
+      replace_file(copy, map);
+    }
+    if (has_table(open_verified(map), table)) return;
     MapUpdate update(map);
-    if (!has_table(open_verified(map), table)) update.write_table(empty_log(table));
+    update.write_table(empty_log(table));
     update.commit();
   }
 

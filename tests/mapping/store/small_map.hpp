@@ -95,7 +95,7 @@ inline Map small_map(std::uint64_t seed, const SmallMapSize& size = {}) {
     for (int i = 0; i < size.keyframes; ++i) {
       Keyframe k;
       k.session = s;
-      k.t_ns = map.sessions.back().t_begin_ns + i * 80'000'001;
+      k.t_ns = map.sessions.back().t_begin_ns + i * std::int64_t{80'000'001};
       k.drive_frame = 3 * i;
       k.map_frame = static_cast<int>(map.map_frames.size());
       k.T_frame_vehicle = random_pose(random);
