@@ -86,6 +86,7 @@ std::optional<WheelFile> read_wheel_yaml(const std::filesystem::path& file, Prob
   yaml->read("wheelbase", wheels.wheelbase_m, kPositive);
   yaml->read("steering_ratio", wheels.steering_ratio, kPositive);
   yaml->read("ticks_per_turn", wheels.ticks_per_turn, kNotNegative);
+  yaml->read("wraps_at", wheels.wraps_at, kPositive);
   yaml->read("time_offset", wheels.time_offset_s, {-10.0, 10.0});
   yaml->read("sigma_distance_per_sqrt_m", wheels.sigma_distance_per_sqrt_m, kNoise);
   yaml->read("sigma_heading_per_sqrt_m", wheels.sigma_heading_per_sqrt_m, kNoise);

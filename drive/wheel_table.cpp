@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "drive/csv.hpp"
 #include "drive/plausible.hpp"
@@ -11,6 +12,7 @@
 #include "drive/tables.hpp"
 #include "drive/turn_check.hpp"
 #include "drive/wheel_counter.hpp"
+#include "drive/wheels/wheel_wraps.hpp"
 
 namespace roadbook {
 namespace {
@@ -226,6 +228,10 @@ class WheelRow {
   bool good_ = true;
 };
 
+CounterColumn counter_of(const Column& column) {
+  return {column.kind != WheelColumn::kSpeed, column.kind == WheelColumn::kTicks, column.factor};
+}
+
 }  // namespace
 
 StreamSummary read_wheel_table(const std::filesystem::path& file,
@@ -243,31 +249,41 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
   const auto right = find_wheel(csv, right_name, model.radius_right_m, model, problems);
   Steering steering = find_steering(csv, model);
   if (!t_column || !left || !right || !csv.good()) return stamps.finish("wheels0", limits);
+  std::vector<WheelCells> rows;
+  while (csv.next()) {
+    WheelRow row(csv);
+    const auto t = csv.stamp(*t_column);
+    WheelCells cells;
+    cells.line = csv.line();
+    cells.steering_rad = row.number(steering.index);
+    if (cells.steering_rad) {
+      steering.bound->add(*cells.steering_rad, csv.line());
+      *cells.steering_rad *= steering.factor;
+    }
+    const auto left_now = row.wheel(*left, model, left_name.side, cells.steering_rad);
+    const auto right_now = row.wheel(*right, model, right_name.side, cells.steering_rad);
+    if (!t || !row.good() || !stamps.add(*t, csv.line())) continue;
+    // Without both wheels a row says nothing of the motion; the rows around it bridge it.
+    if (!left_now || !right_now) continue;
+    cells.t_ns = *t;
+    cells.wheel = {*left_now, *right_now};
+    rows.push_back(cells);
+  }
+  undo_wraps(csv.file(), {counter_of(*left), counter_of(*right)}, model, rows, problems);
   Accumulator left_angle(*left, left_name.long_name, model.radius_left_m, model);
   Accumulator right_angle(*right, right_name.long_name, model.radius_right_m, model);
   SteeringCheck against_wheels(model);
   std::optional<std::int64_t> before_ns;
-  while (csv.next()) {
-    WheelRow row(csv);
-    const auto t = csv.stamp(*t_column);
+  for (const WheelCells& cells : rows) {
+    const double dt_s = before_ns ? static_cast<double>(cells.t_ns - *before_ns) * 1e-9 : 0.0;
     WheelReading reading;
-    reading.steering_rad = row.number(steering.index);
-    if (reading.steering_rad) {
-      steering.bound->add(*reading.steering_rad, csv.line());
-      *reading.steering_rad *= steering.factor;
-    }
-    const auto left_now = row.wheel(*left, model, left_name.side, reading.steering_rad);
-    const auto right_now = row.wheel(*right, model, right_name.side, reading.steering_rad);
-    if (!t || !row.good() || !stamps.add(*t, csv.line())) continue;
-    // Without both wheels a row says nothing of the motion; the rows around it bridge it.
-    if (!left_now || !right_now) continue;
-    const double dt_s = before_ns ? static_cast<double>(*t - *before_ns) * 1e-9 : 0.0;
-    reading.t_ns = *t;
-    reading.left_angle_rad = left_angle.add(*left_now, dt_s, csv.line());
-    reading.right_angle_rad = right_angle.add(*right_now, dt_s, csv.line());
+    reading.t_ns = cells.t_ns;
+    reading.steering_rad = cells.steering_rad;
+    reading.left_angle_rad = left_angle.add(cells.wheel[0], dt_s, cells.line);
+    reading.right_angle_rad = right_angle.add(cells.wheel[1], dt_s, cells.line);
     if (reading.steering_rad)
       against_wheels.add(left_angle.turn(), right_angle.turn(), *reading.steering_rad);
-    before_ns = *t;
+    before_ns = cells.t_ns;
     visit(reading);
   }
   if (!report_steering(csv, steering, model, problems))

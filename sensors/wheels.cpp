@@ -75,12 +75,18 @@ WheelOdometry::WheelOdometry(const WheelModel& model, std::vector<WheelReading> 
   for (auto& reading : readings_) reading.t_ns += offset_ns;
 }
 
+void WheelOdometry::distrust(std::int64_t t_a_ns, std::int64_t t_b_ns) {
+  distrusted_.emplace_back(t_a_ns, t_b_ns);
+}
+
 std::optional<PlanarMotion> WheelOdometry::between(std::int64_t t_a_ns,
                                                    std::int64_t t_b_ns,
                                                    std::int64_t max_gap_ns) const {
   if (readings_.empty() || t_b_ns < t_a_ns || t_a_ns < readings_.front().t_ns ||
       t_b_ns > readings_.back().t_ns)
     return std::nullopt;
+  for (const auto& [begin, end] : distrusted_)
+    if (t_a_ns < end && begin < t_b_ns) return std::nullopt;
   const auto not_before = [&](std::int64_t t) {
     return static_cast<std::size_t>(
         std::lower_bound(readings_.begin(), readings_.end(), t,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/se3.hpp"
@@ -21,6 +22,7 @@ struct WheelModel {
   double wheelbase_m = 2.6;
   double steering_ratio = 1.0;  ///< steering-wheel angle / road-wheel angle
   double ticks_per_turn = 0.0;  ///< for tick columns; 0: none
+  double wraps_at = 0.0;        ///< readings start again here, in the column's unit; 0: not stated
   double time_offset_s = 0.0;   ///< to add to the wheels' stamps
   // Noise of the motion, used as covariance of the integrated odometry.
   double sigma_distance_per_sqrt_m = 0.01;  ///< standard deviation of distance [m] after 1 m
@@ -67,16 +69,19 @@ class WheelOdometry {
 
   /// Returns the motion from t_a to t_b (t_a <= t_b), with the wheels' time offset applied.
   /// Readings are interpolated linearly. Empty if the readings do not cover both times, or have a
-  /// gap longer than `max_gap_ns` between them.
+  /// gap longer than `max_gap_ns` between them, or are distrusted at some time between.
   [[nodiscard]] std::optional<PlanarMotion> between(std::int64_t t_a_ns,
                                                     std::int64_t t_b_ns,
                                                     std::int64_t max_gap_ns = 500'000'000) const;
+  /// Makes every motion unknown that overlaps the time from t_a to t_b (t_a < t_b).
+  void distrust(std::int64_t t_a_ns, std::int64_t t_b_ns);
   [[nodiscard]] const WheelModel& model() const { return model_; }
   [[nodiscard]] bool empty() const { return readings_.empty(); }
 
  private:
   WheelModel model_;
   std::vector<WheelReading> readings_;
+  std::vector<std::pair<std::int64_t, std::int64_t>> distrusted_;
 };
 
 }  // namespace roadbook

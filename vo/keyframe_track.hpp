@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/se3.hpp"
@@ -44,9 +45,20 @@ struct Track {
   std::optional<Eigen::Vector3d> p_odom;
 };
 
+/// A time in which a sensor contradicts the cameras, and what was done.
+struct SensorDoubt {
+  std::string sensor;  ///< "wheels0"
+  std::int64_t t_begin_ns = 0;
+  std::int64_t t_end_ns = 0;
+  std::string got;   ///< what disagrees, when and by how much
+  std::string want;  ///< what a sound sensor would give, and what was done without it
+};
+
 struct VoResult {
   std::vector<VoKeyframe> keyframes;
   std::vector<Track> tracks;
+  bool uses_wheels = false;  ///< false: the scale is that of the cameras' height over the ground
+  std::vector<SensorDoubt> doubts;
 };
 
 }  // namespace roadbook

@@ -1,136 +1,15 @@
 #include "vo/track_drive.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <future>
+#include <cstdlib>
 #include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
+#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "base/error.hpp"
-#include "base/parallel.hpp"
-#include "vo/keyframe_spacing.hpp"
+#include "vo/odometry_run.hpp"
+#include "vo/wheel_doubts.hpp"
 
 namespace roadbook {
-namespace {
-
-constexpr std::size_t kChunk = 8;  // frames described ahead of the tracking
-
-struct Candidate {
-  std::size_t frame = 0;
-  bool after_gap = false;
-};
-
-// Frames that become keyframes by the wheels, known before any image is decoded. Without wheel
-// readings every frame is a candidate.
-class CandidateChooser {
- public:
-  CandidateChooser(const Drive& drive,
-                   const TrackDriveOptions& options,
-                   const WheelOdometry* wheels)
-      : drive_(drive),
-        wheels_(wheels),
-        max_gap_ns_(static_cast<std::int64_t>(options.max_gap_s * 1e9)),
-        spacing_(options.odometry.spacing_m, options.odometry.turn_rad) {}
-
-  std::vector<Candidate> choose() {
-    for (std::size_t i = 0; i < drive_.frame_count(); ++i) {
-      // If the frame before is the better keyframe, this frame is judged again from there.
-      while (!offer(i)) {
-      }
-    }
-    return std::move(candidates_);
-  }
-
- private:
-  struct Step {
-    std::size_t frame = 0;
-    double distance_m = 0.0;
-    double turn_rad = 0.0;
-  };
-
-  bool offer(std::size_t frame) {
-    const auto step = candidates_.empty() ? std::nullopt : step_to(frame);
-    if (!step) {
-      take_unknown(frame);
-      return true;
-    }
-    const double progress = spacing_.progress(step->distance_m, step->turn_rad);
-    if (progress < 1.0) {
-      held_ = step;
-      return true;
-    }
-    const bool held_is_nearer =
-        held_ && KeyframeSpacing::first_is_nearer(
-                     spacing_.progress(held_->distance_m, held_->turn_rad), progress);
-    take(held_is_nearer ? *held_ : *step);
-    return !held_is_nearer;
-  }
-
-  // From the last candidate, where the wheels know it.
-  [[nodiscard]] std::optional<Step> step_to(std::size_t frame) const {
-    if (!wheels_) return std::nullopt;
-    const auto moved = wheels_->between(drive_.frame_stamp_ns(candidates_.back().frame),
-                                        drive_.frame_stamp_ns(frame));
-    if (!moved) return std::nullopt;
-    return Step{frame, moved->motion.head<2>().norm(), moved->motion.z()};
-  }
-
-  void take(const Step& step) {
-    spacing_.taken(step.distance_m, step.turn_rad, held_.has_value());
-    held_.reset();
-    candidates_.push_back({step.frame, false});
-  }
-
-  void take_unknown(std::size_t frame) {
-    const bool after_gap =
-        frame > 0 && drive_.frame_stamp_ns(frame) - drive_.frame_stamp_ns(frame - 1) > max_gap_ns_;
-    spacing_.restart();
-    held_.reset();
-    candidates_.push_back({frame, after_gap});
-  }
-
-  const Drive& drive_;
-  const WheelOdometry* wheels_;
-  std::int64_t max_gap_ns_;
-  KeyframeSpacing spacing_;
-  std::vector<Candidate> candidates_;
-  std::optional<Step> held_;  // the newest frame short of the next keyframe
-};
-
-// A rig of few cameras sees no more than a rig of four, but may look more closely.
-FeatureOptions share_of(FeatureOptions features, std::size_t cameras) {
-  const int factor = cameras == 1 ? 3 : cameras == 2 ? 2 : 1;
-  features.max_features *= factor;
-  features.max_per_cell *= factor;
-  return features;
-}
-
-using FrameFeatures = std::vector<Features>;
-
-std::vector<FrameFeatures> describe(const Drive& drive,
-                                    const std::vector<Candidate>& candidates,
-                                    std::size_t begin,
-                                    const std::vector<cv::Mat>& masks,
-                                    const FeatureOptions& features,
-                                    int num_threads) {
-  const std::size_t end = std::min(candidates.size(), begin + kChunk);
-  const std::size_t cameras = drive.rig().cameras.size();
-  std::vector<FrameFeatures> chunk(end > begin ? end - begin : 0, FrameFeatures(cameras));
-  parallel_for(chunk.size() * cameras, num_threads, [&](std::size_t job) {
-    const std::size_t frame = candidates[begin + job / cameras].frame;
-    const std::size_t camera = job % cameras;
-    if (!drive.has_image(frame, camera)) return;
-    const cv::Mat half = drive.read_image_half(frame, camera);
-    if (!half.empty())
-      chunk[job / cameras][camera] = detect_features(half, masks[camera], features);
-  });
-  return chunk;
-}
-
-}  // namespace
 
 void TrackDriveOptions::check() const {
   features.check();
@@ -161,32 +40,19 @@ VoResult track_drive(const Drive& drive,
   std::optional<WheelOdometry> wheels;
   if (options.use_wheels && drive.wheel_model())
     wheels.emplace(*drive.wheel_model(), drive.wheel_readings());
-  const auto candidates = CandidateChooser(drive, options, wheels ? &*wheels : nullptr).choose();
-  VisualOdometry odometry(half_size(drive.rig()), options.odometry);
-  std::int64_t last_keyframe_t = 0;
-  const FeatureOptions features = share_of(options.features, drive.rig().cameras.size());
-  const auto describe_from = [&](std::size_t begin) {
-    return describe(drive, candidates, begin, masks, features, options.num_threads);
-  };
-  auto next = std::async(std::launch::async, describe_from, std::size_t{0});
-  for (std::size_t begin = 0; begin < candidates.size(); begin += kChunk) {
-    auto chunk = next.get();
-    if (begin + kChunk < candidates.size())
-      next = std::async(std::launch::async, describe_from, begin + kChunk);
-    for (std::size_t i = 0; i < chunk.size(); ++i) {
-      const Candidate& candidate = candidates[begin + i];
-      VoFrame frame;
-      frame.frame = candidate.frame;
-      frame.t_ns = drive.frame_stamp_ns(candidate.frame);
-      frame.features = std::move(chunk[i]);
-      frame.after_gap = candidate.after_gap;
-      if (wheels && begin + i > 0) frame.wheels = wheels->between(last_keyframe_t, frame.t_ns);
-      (void)odometry.add(std::move(frame));
-      last_keyframe_t = odometry.last_keyframe_ns().value_or(last_keyframe_t);
-    }
-    report(progress, "odometry", begin + chunk.size(), candidates.size());
+  VoResult result = run_odometry(drive, masks, options, wheels ? &*wheels : nullptr, progress);
+  if (wheels && std::getenv("RB_DBG") != nullptr) {
+    double height = 0.0;
+    for (const auto& mounted : drive.rig().cameras)
+      height += mounted.T_vehicle_camera.translation().z();
+    height /= static_cast<double>(drive.rig().cameras.size());
+    (void)compare_wheels(result, *wheels, true);
+    (void)ground_factor(result, height);
+    const VoResult alone = run_odometry(drive, masks, options, nullptr, progress);
+    (void)compare_wheels(alone, *wheels, false);
+    (void)ground_factor(alone, height);
   }
-  return odometry.finish();
+  return result;
 }
 
 }  // namespace roadbook

@@ -80,7 +80,9 @@ VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame, bool is_first_mot
   const double distance = T_last_new.translation().norm();
   const double turn = so3_log(T_last_new.linear()).norm();
   const double dt = static_cast<double>(frame.t_ns - last().t_ns) * 1e-9;
-  if (!frame.wheels && dt > 0.0) velocity = se3_log(T_last_new) / dt;
+  if (dt > 0.0) velocity = se3_log(T_last_new) / dt;
+  // Where the wheels end, the cameras go on from the last motion.
+  if (frame.wheels && dt > 0.0) has_motion = true;
   VoKeyframe keyframe;
   keyframe.T_odom_vehicle = pose->T_world_vehicle;
   keyframe.wheels = frame.wheels;
