@@ -25,7 +25,10 @@ struct VoKeyframe {
   std::optional<PlanarMotion> wheels;
   /// Information of the motion from the previous keyframe as estimated (right perturbation).
   Matrix6d information = Matrix6d::Zero();
-  int inliers = 0;           ///< triangulated features that agreed with the pose
+  int inliers = 0;  ///< triangulated features that agreed with the pose
+  /// Turn [rad] since the previous keyframe by the cameras alone, near the pose found with the
+  /// wheels, less that of the wheels. 0 without wheels, and where the cameras know none.
+  double turn_beyond_wheels_rad = 0.0;
   double travelled_m = 0.0;  ///< since the drive's start, in the odometry's scale
   bool reversing = false;
   bool after_gap = false;  ///< the motion from the previous keyframe is unknown

@@ -51,6 +51,15 @@ void mark_inliers(const Rig& rig,
   }
 }
 
+// Where the observations alone would turn, seen from the prior: `xi` from the prior to here, and
+// one step of the observations' normal equations from here on.
+double alone_beyond(const Matrix6d& H, const Vector6d& g, const Vector6d& xi) {
+  const Eigen::LDLT<Matrix6d> ldlt(H);
+  if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 1e-9)) return 0.0;
+  const Vector6d step = ldlt.solve(g);
+  return step.allFinite() ? xi(5) + step(5) : 0.0;
+}
+
 template <typename Adapter>
 std::optional<Eigen::Isometry3d> ransac(
     Adapter& adapter,
@@ -96,6 +105,7 @@ std::optional<RigPose> refine_rig_pose(const Rig& rig,
     }
     if (prior) {
       const Vector6d xi = se3_log(prior->T_world_vehicle.inverse() * pose.T_world_vehicle);
+      pose.heading_beyond_prior_rad = alone_beyond(H, g, xi);
       H += prior->information;
       g -= prior->information * xi;
     }

@@ -31,6 +31,9 @@ struct RigPose {
   Matrix6d information = Matrix6d::Zero();  ///< of the right perturbation, prior included
   std::vector<std::uint8_t> inlier;         ///< per observation
   int inliers = 0;
+  /// Heading [rad] by the observations alone less that of the prior, to first order around the
+  /// pose. 0 without a prior.
+  double heading_beyond_prior_rad = 0.0;
 };
 
 struct RigPoseOptions {

@@ -54,6 +54,7 @@ bool images_move(const Rig& half_rig, const FrameFeatures& before, const FrameFe
     std::vector<MatchQuery> queries;
     for (std::size_t f = 0; f < before[c].size(); ++f) {
       MatchQuery query;
+      query.bearing.setZero();  // `match_near` needs none
       query.pixel = before[c].pixels[f];
       query.descriptor = &before[c].descriptors[f];
       queries.push_back(query);

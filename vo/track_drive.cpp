@@ -1,13 +1,14 @@
 #include "vo/track_drive.hpp"
 
-#include <cstdlib>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 
 #include "base/error.hpp"
 #include "vo/odometry_run.hpp"
+#include "vo/standstill.hpp"
 #include "vo/wheel_doubts.hpp"
+#include "vo/wheel_report.hpp"
 
 namespace roadbook {
 
@@ -28,6 +29,50 @@ Rig half_size(const Rig& rig) {
   return half;
 }
 
+namespace {
+
+double camera_height(const Rig& rig) {
+  double sum = 0.0;
+  for (const auto& mounted : rig.cameras) sum += mounted.T_vehicle_camera.translation().z();
+  return sum / static_cast<double>(rig.cameras.size());
+}
+
+// Odometry of a drive whose wheels may be wrong. It lets the cameras work alone first, and then
+// leaves out the wheels where they contradict the cameras, or all of them.
+VoResult track_with_doubts(const Drive& drive,
+                           const std::vector<cv::Mat>& masks,
+                           const TrackDriveOptions& options,
+                           WheelOdometry& wheels,
+                           const Progress& progress) {
+  const double height = camera_height(drive.rig());
+  const auto alone = [&] { return run_odometry(drive, masks, options, nullptr, progress); };
+  VoResult sight = alone();
+  if (sight.keyframes.size() < 2) return run_odometry(drive, masks, options, &wheels, progress);
+  const WheelComparison comparison = compare_wheels(sight, wheels, height);
+  const std::int64_t origin_ns = drive.frame_stamp_ns(0);
+  const SensorDoubt all = describe_doubts(comparison, sight, origin_ns, true);
+  if (comparison.doubts_all()) {
+    sight.doubts.push_back(all);
+    return sight;
+  }
+  const SensorDoubt some = describe_doubts(comparison, sight, origin_ns, false);
+  for (const WheelDoubt& doubt : comparison.doubts)
+    wheels.distrust(doubt.span.first, doubt.span.second);
+  sight = {};
+  VoResult result = run_odometry(drive, masks, options, &wheels, progress);
+  if (comparison.doubts.empty()) return result;
+  if (!may_be_wrong(result, wheels, height)) {
+    result.doubts.push_back(some);
+    return result;
+  }
+  result = {};
+  result = alone();
+  result.doubts.push_back(all);
+  return result;
+}
+
+}  // namespace
+
 VoResult track_drive(const Drive& drive,
                      const std::vector<cv::Mat>& masks,
                      const TrackDriveOptions& options,
@@ -40,19 +85,13 @@ VoResult track_drive(const Drive& drive,
   std::optional<WheelOdometry> wheels;
   if (options.use_wheels && drive.wheel_model())
     wheels.emplace(*drive.wheel_model(), drive.wheel_readings());
-  VoResult result = run_odometry(drive, masks, options, wheels ? &*wheels : nullptr, progress);
-  if (wheels && std::getenv("RB_DBG") != nullptr) {
-    double height = 0.0;
-    for (const auto& mounted : drive.rig().cameras)
-      height += mounted.T_vehicle_camera.translation().z();
-    height /= static_cast<double>(drive.rig().cameras.size());
-    (void)compare_wheels(result, *wheels, true);
-    (void)ground_factor(result, height);
-    const VoResult alone = run_odometry(drive, masks, options, nullptr, progress);
-    (void)compare_wheels(alone, *wheels, false);
-    (void)ground_factor(alone, height);
+  if (!wheels) return run_odometry(drive, masks, options, nullptr, progress);
+  const auto standstills = false_standstills(drive, masks, options, *wheels);
+  if (standstills.empty()) {
+    VoResult result = run_odometry(drive, masks, options, &*wheels, progress);
+    if (!may_be_wrong(result, *wheels, camera_height(drive.rig()))) return result;
   }
-  return result;
+  return track_with_doubts(drive, masks, options, *wheels, progress);
 }
 
 }  // namespace roadbook

@@ -88,6 +88,7 @@ VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame, bool is_first_mot
   keyframe.wheels = frame.wheels;
   keyframe.information = pose->information / options.information_discount;
   keyframe.inliers = pose->inliers;
+  if (frame.wheels) keyframe.turn_beyond_wheels_rad = pose->heading_beyond_prior_rad;
   keyframe.travelled_m = last().travelled_m + distance;
   keyframe.reversing = T_last_new.translation().x() < 0.0;
   if (!frame.wheels && !is_first_motion) {

@@ -3,53 +3,50 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
+#include <numbers>
 
 #include "base/se3.hpp"
-#include "vo/ground_scale.hpp"
 
 namespace roadbook {
 namespace {
 
 constexpr double kSigmas = 4.0;
 constexpr std::array<std::size_t, 3> kWindows{1, 4, 16};  // keyframes
-constexpr std::size_t kTypical = 1;                       // of them, for the ratio of lengths
 constexpr int kFewestInliers = 20;
+// Honest wheels: radius and track are known to some percent, corners to some pixels.
+constexpr double kOfTurn = 0.04;
+constexpr double kOfWay = 0.05;
+constexpr double kLeastTurn_rad = 0.004;
+constexpr double kLeastWay_m = 0.02;
 
-// Motion over a window of keyframes: forwards [m] and turn [rad].
+// Motion over some keyframes: forwards [m] and turn [rad], by the cameras and by the wheels.
 struct Window {
   std::size_t first = 0;
   std::size_t last = 0;
-  double way = 0.0;  // by the cameras
+  double way = 0.0;
   double turn = 0.0;
   double wheel_way = 0.0;
   double wheel_turn = 0.0;
-  double sigma_way = 0.0;
-  double sigma_turn = 0.0;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the wheels
   double scale = 1.0;  // cameras' length over wheels' length hereabouts
 
-  [[nodiscard]] double turn_gap() const { return angle_difference(wheel_turn, turn); }
+  [[nodiscard]] double turn_gap() const {
+    return std::remainder(wheel_turn - turn, 2.0 * std::numbers::pi);
+  }
   [[nodiscard]] double way_gap() const { return wheel_way - way / scale; }
-  [[nodiscard]] bool doubts_turn() const { return std::abs(turn_gap()) > kSigmas * sigma_turn; }
-  [[nodiscard]] bool doubts_way() const { return std::abs(way_gap()) > kSigmas * sigma_way; }
-  static double angle_difference(double a, double b) { return std::remainder(a - b, 2.0 * M_PI); }
+  [[nodiscard]] bool doubts_turn() const {
+    const double usual = kOfTurn * turn;
+    return std::abs(turn_gap()) >
+           kSigmas * std::sqrt(covariance(2, 2) + kLeastTurn_rad * kLeastTurn_rad + usual * usual);
+  }
+  [[nodiscard]] bool doubts_way() const {
+    const double usual = kOfWay * way / scale;
+    return std::abs(way_gap()) > kSigmas * std::sqrt(covariance.topLeftCorner<2, 2>().trace() +
+                                                     kLeastWay_m * kLeastWay_m + usual * usual);
+  }
 };
 
 double signed_length(double x, double y) { return std::copysign(std::hypot(x, y), x); }
-
-// Honest wheels: radius and track are known to some percent, stamps to some hundredths of a second.
-void set_sigmas(const PlanarMotion& wheels, double dt_s, double sight_turn, Window& w) {
-  constexpr double kOfTurn = 0.04;
-  constexpr double kOfWay = 0.05;
-  constexpr double kLeastTurn = 0.004;
-  constexpr double kLeastWay = 0.02;
-  (void)dt_s;
-  w.sigma_turn = std::sqrt(wheels.covariance(2, 2) + kLeastTurn * kLeastTurn +
-                           std::pow(kOfTurn * sight_turn, 2));
-  w.sigma_way = std::sqrt(wheels.covariance.topLeftCorner<2, 2>().trace() + kLeastWay * kLeastWay +
-                          std::pow(kOfWay * w.way, 2));
-}
 
 std::vector<Window> windows_of(const VoResult& odometry,
                                const WheelOdometry& wheels,
@@ -72,82 +69,164 @@ std::vector<Window> windows_of(const VoResult& odometry,
     w.turn = heading_of(T);
     w.wheel_way = signed_length(moved->motion.x(), moved->motion.y());
     w.wheel_turn = moved->motion.z();
-    set_sigmas(*moved, 0.0, w.turn, w);
+    w.covariance = moved->covariance;
     windows.push_back(w);
   }
   return windows;
 }
 
-}  // namespace
-
-WheelComparison compare_wheels(const VoResult& odometry,
-                               const WheelOdometry& wheels,
-                               bool knows_scale) {
-  WheelComparison c;
-  for (std::size_t l : kWindows) {
-    auto ws = windows_of(odometry, wheels, l);
-    if (!knows_scale) {
-      auto t = windows_of(odometry, wheels, kWindows[kTypical]);
-      for (auto& w : ws) {
-        std::vector<double> r;
-        for (auto& x : t)
-          if (std::abs((long)x.first - (long)w.first) < 30 && std::abs(x.wheel_way) > 0.05 &&
-              !x.doubts_turn())
-            r.push_back(x.way / x.wheel_way);
-        if (r.empty()) continue;
-        std::nth_element(r.begin(), r.begin() + r.size() / 2, r.end());
-        w.scale = r[r.size() / 2];
-      }
-    }
-    int bt = 0, bw = 0;
-    std::vector<double> zt, zw;
-    for (auto& w : ws) {
-      bt += w.doubts_turn();
-      bw += w.doubts_way();
-      zt.push_back(std::abs(w.turn_gap()) / w.sigma_turn);
-      zw.push_back(std::abs(w.way_gap()) / w.sigma_way);
-    }
-    std::sort(zt.begin(), zt.end());
-    std::sort(zw.begin(), zw.end());
-    if (ws.size())
-      std::fprintf(stderr,
-                   "DBG L%zu n %zu bad turn %d way %d  zt med %.2f p95 %.2f max %.2f  zw med %.2f "
-                   "p95 %.2f max %.2f\n",
-                   l, ws.size(), bt, bw, zt[zt.size() / 2], zt[zt.size() * 95 / 100], zt.back(),
-                   zw[zw.size() / 2], zw[zw.size() * 95 / 100], zw.back());
-  }
-  return c;
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
-std::optional<double> ground_factor(const VoResult& odometry, double camera_height_m) {
-  constexpr double kAhead = 1.5;
-  constexpr double kBeside = 1.6;
-  constexpr std::size_t kReach = 60;  // keyframes after the first view in which the car gets there
-  constexpr int kFewest = 40;
-  std::vector<double> ratios;
-  for (const Track& track : odometry.tracks) {
-    if (!track.p_odom) continue;
-    const auto first = static_cast<std::size_t>(track.observations.front().keyframe);
-    const std::size_t end = std::min(odometry.keyframes.size(), first + kReach);
-    double best = std::hypot(kAhead, kBeside);
-    std::optional<double> height;
-    for (std::size_t k = first; k < end; ++k) {
-      if (k > first && odometry.keyframes[k].after_gap) break;
-      const Eigen::Vector3d p = odometry.keyframes[k].T_odom_vehicle.inverse() * *track.p_odom;
-      if (std::abs(p.x()) > kAhead || std::abs(p.y()) > kBeside) continue;
-      if (p.head<2>().norm() >= best) continue;
-      best = p.head<2>().norm();
-      height = p.z();
-    }
-    if (height && *height < 0.95 * camera_height_m)
-      ratios.push_back(camera_height_m / (camera_height_m - *height));
+// Cameras' length over wheels' length where both move and turn alike, near each of `windows`.
+// The cameras' scale drifts slowly. Far from good windows, and without any, all of them tell it.
+void set_scales(const std::vector<Window>& typical, std::vector<Window>& windows) {
+  constexpr std::size_t kReach = 30;  // keyframes
+  constexpr std::size_t kFewest = 8;
+  std::vector<Window> good;
+  std::vector<double> all;
+  for (const Window& w : typical) {
+    if (std::abs(w.wheel_way) < 0.05 || w.doubts_turn()) continue;
+    good.push_back(w);
+    all.push_back(w.way / w.wheel_way);
   }
-  const auto found = ground_scale(std::move(ratios), kFewest);
-  if (found)
-    std::fprintf(stderr, "DBG ground %.4f sigma %.4f support %d\n", found->scale, found->sigma,
-                 found->support);
-  if (!found) return std::nullopt;
-  return found->scale;
+  if (all.empty())
+    for (const Window& w : typical)
+      if (std::abs(w.wheel_way) > 0.05) all.push_back(std::abs(w.way / w.wheel_way));
+  if (all.empty()) return;
+  const double overall = median(all);
+  auto begin = good.begin();
+  for (Window& w : windows) {
+    while (begin != good.end() && begin->first + kReach < w.first) ++begin;
+    std::vector<double> near;
+    for (auto it = begin; it != good.end() && it->first <= w.first + kReach; ++it)
+      near.push_back(it->way / it->wheel_way);
+    const double scale = near.size() >= kFewest ? median(std::move(near)) : overall;
+    w.scale = std::abs(scale) > 1e-3 ? scale : 1.0;
+  }
+}
+
+// Doubted times of all windows. A long window that holds a doubted shorter one says nothing more.
+std::vector<TimeSpan> doubted_spans(const VoResult& sight,
+                                    const std::array<std::vector<Window>, kWindows.size()>& all) {
+  constexpr std::int64_t kMarginNs = 150'000'000;  // in which a fault begins and ends
+  constexpr std::int64_t kApartNs = 500'000'000;
+  std::vector<std::uint8_t> doubted(sight.keyframes.size(), 0);  // motion from the one before
+  for (const auto& windows : all) {
+    const std::vector<std::uint8_t> shorter = doubted;
+    for (const Window& w : windows) {
+      if (!w.doubts_turn() && !w.doubts_way()) continue;
+      const auto from = static_cast<std::ptrdiff_t>(w.first) + 1;
+      const auto to = static_cast<std::ptrdiff_t>(w.last) + 1;
+      if (std::any_of(shorter.begin() + from, shorter.begin() + to, [](auto d) { return d != 0; }))
+        continue;
+      std::fill(doubted.begin() + from, doubted.begin() + to, std::uint8_t{1});
+    }
+  }
+  std::vector<TimeSpan> spans;
+  for (std::size_t k = 1; k < doubted.size(); ++k) {
+    if (doubted[k] == 0) continue;
+    const std::int64_t begin = sight.keyframes[k - 1].t_ns - kMarginNs;
+    const std::int64_t end = sight.keyframes[k].t_ns + kMarginNs;
+    if (!spans.empty() && begin <= spans.back().second + kApartNs)
+      spans.back().second = end;
+    else
+      spans.emplace_back(begin, end);
+  }
+  return spans;
+}
+
+// Sizes of the doubts, and their share of the drive, by the shortest windows.
+void measure(const VoResult& sight, const std::vector<Window>& windows, WheelComparison& result) {
+  auto doubt = result.doubts.begin();
+  for (const Window& w : windows) {
+    const std::int64_t middle = (sight.keyframes[w.first].t_ns + sight.keyframes[w.last].t_ns) / 2;
+    while (doubt != result.doubts.end() && doubt->span.second < middle) ++doubt;
+    result.compared_m += std::abs(w.way / w.scale);
+    result.compared_rad += std::abs(w.turn);
+    if (doubt == result.doubts.end() || middle < doubt->span.first) continue;
+    doubt->turn_rad += w.turn_gap();
+    doubt->way_m += w.way_gap();
+    result.doubted_m += std::abs(w.way / w.scale);
+    result.doubted_rad += std::abs(w.turn);
+  }
+}
+
+std::optional<double> median_turn_factor(const std::vector<Window>& windows) {
+  constexpr double kTurns_rad = 0.05;
+  constexpr std::size_t kFewest = 10;
+  std::vector<double> factors;
+  for (const Window& w : windows)
+    if (std::abs(w.turn) > kTurns_rad) factors.push_back(w.wheel_turn / w.turn);
+  if (factors.size() < kFewest) return std::nullopt;
+  return median(std::move(factors));
+}
+
+std::optional<double> median_way_factor(const std::vector<Window>& windows, double ground) {
+  constexpr double kMoves_m = 0.1;
+  constexpr std::size_t kFewest = 10;
+  std::vector<double> factors;
+  for (const Window& w : windows)
+    if (std::abs(w.way) > kMoves_m) factors.push_back(w.wheel_way / (ground * w.way));
+  if (factors.size() < kFewest) return std::nullopt;
+  return median(std::move(factors));
+}
+
+}  // namespace
+
+bool WheelComparison::doubts_all() const {
+  constexpr double kWayShare = 0.25;
+  constexpr double kTurnShare = 0.4;
+  constexpr double kWrongScale = 0.18;  // as a logarithm
+  if (way_factor && !(*way_factor > 0.0 && std::abs(std::log(*way_factor)) < kWrongScale))
+    return true;
+  return doubted_m > kWayShare * compared_m || doubted_rad > kTurnShare * compared_rad;
+}
+
+bool may_be_wrong(const VoResult& odometry, const WheelOdometry& wheels, double camera_height_m) {
+  constexpr std::size_t kSummed = 8;  // keyframes
+  constexpr double kScaleOff = 0.08;
+  const auto& keyframes = odometry.keyframes;
+  double turned = 0.0;
+  double beyond = 0.0;
+  for (std::size_t k = 1; k < keyframes.size(); ++k) {
+    if (!keyframes[k].wheels) continue;
+    if (k > 1 && keyframes[k].inliers < kFewestInliers) return true;
+    beyond += keyframes[k].turn_beyond_wheels_rad;
+    turned += keyframes[k].wheels->motion.z();
+    if (k > kSummed && keyframes[k - kSummed].wheels) {
+      beyond -= keyframes[k - kSummed].turn_beyond_wheels_rad;
+      turned -= keyframes[k - kSummed].wheels->motion.z();
+    }
+    const auto moved = k >= kSummed ? wheels.between(keyframes[k - kSummed].t_ns, keyframes[k].t_ns)
+                                    : std::nullopt;
+    if (!moved) continue;
+    const double usual = kOfTurn * turned;
+    if (std::abs(beyond) > kSigmas * std::sqrt(moved->covariance(2, 2) +
+                                               kLeastTurn_rad * kLeastTurn_rad + usual * usual))
+      return true;
+  }
+  const auto ground = ground_factor(odometry, camera_height_m);
+  return ground && std::abs(std::log(*ground)) > kScaleOff;
+}
+
+WheelComparison compare_wheels(const VoResult& sight,
+                               const WheelOdometry& wheels,
+                               double camera_height_m) {
+  std::array<std::vector<Window>, kWindows.size()> all;
+  for (std::size_t i = 0; i < kWindows.size(); ++i) all[i] = windows_of(sight, wheels, kWindows[i]);
+  const std::vector<Window> typical = all[1];
+  for (auto& windows : all) set_scales(typical, windows);
+  WheelComparison result;
+  for (const TimeSpan& span : doubted_spans(sight, all)) result.doubts.push_back({span});
+  measure(sight, all[0], result);
+  result.turn_factor = median_turn_factor(all[1]);
+  if (const auto ground = ground_factor(sight, camera_height_m))
+    result.way_factor = median_way_factor(all[1], *ground);
+  return result;
 }
 
 }  // namespace roadbook

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "sensors/wheels.hpp"
@@ -10,34 +10,52 @@
 
 namespace roadbook {
 
-// Comparison of the wheels with an odometry of the cameras, over windows of a few keyframes.
+// Comparison of the wheels with odometry, in two steps. An odometry that used the wheels follows
+// them, so that it shows only whether they may be wrong (`may_be_wrong`). An odometry of the
+// cameras alone then shows where and by how much (`compare_wheels`).
+
+using TimeSpan = std::pair<std::int64_t, std::int64_t>;  ///< first and last time [ns]
 
 /// A time in which the wheels contradict the cameras by more than four standard deviations.
 struct WheelDoubt {
-  std::int64_t t_begin_ns = 0;
-  std::int64_t t_end_ns = 0;
+  TimeSpan span;
   double turn_rad = 0.0;  ///< wheels less cameras
-  double way_m = 0.0;     ///< wheels less cameras, in the wheels' length unit
+  double way_m = 0.0;     ///< wheels less cameras, in the wheels' lengths
 };
 
 struct WheelComparison {
   std::vector<WheelDoubt> doubts;  ///< ascending, apart from each other
   double compared_m = 0.0;         ///< way over which the cameras know the motion
   double doubted_m = 0.0;          ///< of it
-  double compared_turn_rad = 0.0;  ///< turn over which the cameras know the motion
-  double doubted_turn_rad = 0.0;   ///< of it
-  /// Turn by the wheels over turn by the cameras: the median, by turn. Empty without turns.
+  double compared_rad = 0.0;       ///< turn over which the cameras know the motion
+  double doubted_rad = 0.0;        ///< of it
+  /// Median of the turns by the wheels over the turns by the cameras. Empty without turns.
   std::optional<double> turn_factor;
+  /// Way by the wheels over the way by the cameras, whose scale is their height over the ground.
+  /// Empty without enough ground.
+  std::optional<double> way_factor;
+
+  /// The wheels are wrong in so much of the drive that the rest is better left out.
+  [[nodiscard]] bool doubts_all() const;
 };
 
-/// Compares the wheels with the motions of `odometry`. `knows_scale`: its lengths are metres of the
-/// wheels (it used them); else only changes of the ratio of lengths are seen.
-[[nodiscard]] WheelComparison compare_wheels(const VoResult& odometry,
-                                             const WheelOdometry& wheels,
-                                             bool knows_scale);
+/// Says whether `odometry`, which used the wheels, shows a sign that they are wrong: keyframes
+/// whose corners did not agree with any motion near that of the wheels; turns that the cameras
+/// alone see otherwise; the ground at a wrong distance below the cameras.
+[[nodiscard]] bool may_be_wrong(const VoResult& odometry,
+                                const WheelOdometry& wheels,
+                                double camera_height_m);
 
-/// Length by the cameras' height over the ground over length in `odometry`: 1 if the scale is
-/// right. Empty if too little ground is seen.
+/// Compares the wheels with the motions of `sight`, an odometry of the cameras alone, over windows
+/// of 1, 4 and 16 keyframes. Wheels may be off by what is usual: their noise, 4 % of the turn (1
+/// sigma: radii and track) and 5 % of the way. `sight` knows lengths up to a factor that changes
+/// slowly: only changes of the ratio over some metres are seen in a window.
+[[nodiscard]] WheelComparison compare_wheels(const VoResult& sight,
+                                             const WheelOdometry& wheels,
+                                             double camera_height_m);
+
+/// Factor on the lengths of `odometry` that puts the ground at the cameras' height below them.
+/// Empty if too little ground is seen.
 [[nodiscard]] std::optional<double> ground_factor(const VoResult& odometry, double camera_height_m);
 
 }  // namespace roadbook

@@ -77,7 +77,7 @@ DrivenPlace drive_through(const RowsDrive& drive,
         track_drive(recorded, find_own_car(recorded, {}, 0).masks, options.tracking, progress));
     add_truth(recorded, odometry.back(), place);
     place.rigs.push_back(recorded.rig());
-    has_wheels.push_back(recorded.wheel_model().has_value());
+    has_wheels.push_back(odometry.back().uses_wheels);
     place.spaces = make_layout(scenario).spaces;
   }
   place.input = join_drives(std::move(odometry), place.rigs, has_wheels);

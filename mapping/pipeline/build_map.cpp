@@ -69,6 +69,12 @@ VoResult odometry_of(const Drive& drive,
   return odometry;
 }
 
+void add_doubts(const Drive& drive, const VoResult& odometry, std::vector<Problem>& warnings) {
+  for (const SensorDoubt& doubt : odometry.doubts)
+    warnings.push_back({Severity::kWarning, (drive.folder() / doubt.sensor).string(), 0,
+                        doubt.sensor, doubt.got, doubt.want});
+}
+
 std::vector<LoopClosure> loops_of(const MappingInput& input,
                                   const MapOptions& options,
                                   MapFileBuilder& build,
@@ -227,7 +233,8 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
     odometry.push_back(clock.run(
         "odometry", [&] { return odometry_of(drives[i], cars[i], i, options, build, progress); }));
     rigs.push_back(drives[i].rig());
-    has_wheels.push_back(options.tracking.use_wheels && drives[i].wheel_model().has_value());
+    has_wheels.push_back(odometry.back().uses_wheels);
+    add_doubts(drives[i], odometry.back(), summary.warnings);
   }
   MappingInput input = join_drives(std::move(odometry), rigs, has_wheels);
   std::vector<std::optional<double>> ground_sigma(drives.size());

@@ -154,6 +154,15 @@ std::string tracks_to_blob(const VoResult& odometry) {
     w.value<std::uint8_t>(track.p_odom ? 1 : 0);
     if (track.p_odom) w.matrix(*track.p_odom);
   }
+  w.value<std::uint8_t>(odometry.uses_wheels ? 1 : 0);
+  w.value<std::uint64_t>(odometry.doubts.size());
+  for (const auto& doubt : odometry.doubts) {
+    w.text(doubt.sensor);
+    w.value(doubt.t_begin_ns);
+    w.value(doubt.t_end_ns);
+    w.text(doubt.got);
+    w.text(doubt.want);
+  }
   return w.take();
 }
 
@@ -175,6 +184,17 @@ void append_tracks(std::string_view blob, VoResult& odometry) {
       r.matrix(*track.p_odom);
     }
     odometry.tracks.push_back(std::move(track));
+  }
+  odometry.uses_wheels = r.value<std::uint8_t>() != 0;
+  const auto doubts = r.value<std::uint64_t>();
+  for (std::uint64_t i = 0; i < doubts; ++i) {
+    SensorDoubt doubt;
+    doubt.sensor = r.text();
+    doubt.t_begin_ns = r.value<std::int64_t>();
+    doubt.t_end_ns = r.value<std::int64_t>();
+    doubt.got = r.text();
+    doubt.want = r.text();
+    odometry.doubts.push_back(std::move(doubt));
   }
 }
 
