@@ -68,7 +68,11 @@ struct BundleOptions {
   int max_iterations = 30;           ///< linear solves in a round
   double relative_tolerance = 1e-6;  ///< a round ends when a step lowers the cost by less than this
   RobustLoss loss = RobustLoss::kHuber;
-  double loss_width = 2.0;       ///< [standard deviations]; larger residuals lose weight
+  double loss_width = 2.0;  ///< [standard deviations]; larger residuals lose weight
+  /// Length of a motion's normalised residual (6 degrees of freedom, p = 1e-4) beyond which its
+  /// cost grows linearly. A false motion then pulls no harder than one at this length. Not with
+  /// RobustLoss::kNone.
+  double motion_loss_width = 5.28;
   double ground_sigma_m = 0.02;  ///< of a ground height: roughness, error of the cameras' height
   /// Rounds of removing outliers and solving again.
   int outlier_rounds = 2;

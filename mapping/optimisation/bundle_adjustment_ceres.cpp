@@ -60,6 +60,11 @@ std::unique_ptr<ceres::LossFunction> loss_of(const BundleOptions& options) {
   return std::make_unique<ceres::TrivialLoss>();
 }
 
+std::unique_ptr<ceres::LossFunction> motion_loss_of(const BundleOptions& options) {
+  if (options.loss == RobustLoss::kNone) return std::make_unique<ceres::TrivialLoss>();
+  return std::make_unique<ceres::HuberLoss>(options.motion_loss_width);
+}
+
 // The bundle problem as parameter and residual blocks.
 struct BundleBlocks {
   std::vector<PoseBlock> poses;
@@ -67,6 +72,7 @@ struct BundleBlocks {
   std::vector<double> scales;
   PoseManifold manifold;
   std::unique_ptr<ceres::LossFunction> loss;
+  std::unique_ptr<ceres::LossFunction> motion_loss;
   ceres::Problem problem{ceres_problem_options()};
   std::shared_ptr<ceres::ParameterBlockOrdering> order =
       std::make_shared<ceres::ParameterBlockOrdering>();
@@ -75,7 +81,10 @@ struct BundleBlocks {
                const BundleLayout& layout,
                const BundleOptions& options,
                const BundleState& state)
-      : points(state.points), scales(state.scales), loss(loss_of(options)) {
+      : points(state.points),
+        scales(state.scales),
+        loss(loss_of(options)),
+        motion_loss(motion_loss_of(options)) {
     poses.reserve(state.poses.size());
     for (const Eigen::Isometry3d& T : state.poses) poses.push_back(block_of(T));
     add_poses(layout);
@@ -118,8 +127,8 @@ struct BundleBlocks {
     for (const MotionConstraint& m : bundle.motions) {
       std::vector<double*> blocks{poses[at(m.from)].data(), poses[at(m.to)].data()};
       if (m.scale >= 0) blocks.push_back(&scales[at(m.scale)]);
-      problem.AddResidualBlock(new MotionCost(m.T_from_to, m.information, m.scale >= 0), nullptr,
-                               blocks);
+      problem.AddResidualBlock(new MotionCost(m.T_from_to, m.information, m.scale >= 0),
+                               motion_loss.get(), blocks);
     }
     for (const PosePrior& prior : bundle.priors)
       problem.AddResidualBlock(new PosePriorCost(prior.T_map_vehicle, prior.information), nullptr,

@@ -18,8 +18,10 @@ void BundleSystem::linearise_motions(const BundleState& state) {
     const double scale = m.scale < 0 ? 1.0 : state.scales[at(m.scale)];
     const MotionResidual e =
         motion_residual(state.poses[at(m.from)], state.poses[at(m.to)], m.T_from_to, scale);
-    const Matrix6d A = e.J_from.transpose() * m.information;
-    const Matrix6d B = e.J_to.transpose() * m.information;
+    const double weight = motion_cost(e.r.dot(m.information * e.r), options_).weight;
+    const Matrix6d information = weight * m.information;
+    const Matrix6d A = e.J_from.transpose() * information;
+    const Matrix6d B = e.J_to.transpose() * information;
     const int a = layout_.variable[at(m.from)];
     const int b = layout_.variable[at(m.to)];
     add_pose(a, e.J_from, A, e.r);
@@ -29,8 +31,8 @@ void BundleSystem::linearise_motions(const BundleState& state) {
     if (s < 0) continue;
     if (a >= 0) border_.col(s).segment<6>(row_of(at(a))) += A * e.J_scale;
     if (b >= 0) border_.col(s).segment<6>(row_of(at(b))) += B * e.J_scale;
-    scale_H_(s, s) += e.J_scale.dot(m.information * e.J_scale);
-    b_s_(s) -= e.J_scale.dot(m.information * e.r);
+    scale_H_(s, s) += e.J_scale.dot(information * e.J_scale);
+    b_s_(s) -= e.J_scale.dot(information * e.r);
   }
   for (const PosePrior& prior : problem_.priors) {
     const MotionResidual e = motion_residual(Eigen::Isometry3d::Identity(),

@@ -160,6 +160,13 @@ RobustCost robust_cost(double squared, const BundleOptions& options) {
   return {squared, 1.0};
 }
 
+RobustCost motion_cost(double squared, const BundleOptions& options) {
+  const double width = options.motion_loss_width;
+  if (options.loss == RobustLoss::kNone || squared <= width * width) return {squared, 1.0};
+  const double root = std::sqrt(squared);
+  return {2.0 * width * root - width * width, width / root};
+}
+
 double invalid_cost(const BundleOptions& options) {
   return robust_cost(100.0 * options.loss_width * options.loss_width, options).rho;
 }
@@ -190,7 +197,7 @@ double bundle_cost(const BundleProblem& problem,
     const double scale = m.scale < 0 ? 1.0 : state.scales[at(m.scale)];
     const Vector6d r =
         motion_error(state.poses[at(m.from)], state.poses[at(m.to)], m.T_from_to, scale);
-    cost += r.dot(m.information * r);
+    cost += motion_cost(r.dot(m.information * r), options).rho;
   }
   for (const PosePrior& prior : problem.priors) {
     const Vector6d r = motion_error(Eigen::Isometry3d::Identity(), state.poses[at(prior.pose)],

@@ -84,6 +84,8 @@ struct RobustCost {
   double weight;
 };
 [[nodiscard]] RobustCost robust_cost(double squared, const BundleOptions& options);
+/// The same for a motion: Huber's, of its own width.
+[[nodiscard]] RobustCost motion_cost(double squared, const BundleOptions& options);
 
 /// Half the sum of all robust squared residuals, motions and priors included. A pixel that cannot
 /// be predicted costs as much as one ten loss widths off, so that hiding a point gains nothing.
