@@ -28,10 +28,10 @@ struct Drive::Impl {
   mutable std::mutex mutex;
   mutable std::set<fs::path> reported;  ///< images whose damage has been counted
 
-  cv::Mat decode(const fs::path& file, std::size_t camera) const {
+  cv::Mat decode(const fs::path& file, std::size_t camera, const GreyRange& greys) const {
     const Camera& lens = content.rig.cameras[camera].camera;
     std::string why;
-    cv::Mat image = decode_image_file(file, {lens.width, lens.height}, why);
+    cv::Mat image = decode_image_file(file, {lens.width, lens.height}, why, greys);
     if (!image.empty()) return image;
     const std::scoped_lock lock(mutex);
     if (reported.insert(file).second) problems.warning(file.string(), 0, "", why, "an image");
@@ -103,7 +103,8 @@ std::optional<std::filesystem::path> Drive::mask_path(std::size_t camera) const 
 
 cv::Mat Drive::read_image(std::size_t frame, std::size_t camera) const {
   if (!has_image(frame, camera)) return {};
-  return impl_->decode(image_path(frame, camera), camera);
+  return impl_->decode(image_path(frame, camera), camera,
+                       impl_->content.images.at(camera).greys.value_or(GreyRange{}));
 }
 
 cv::Mat Drive::read_image_half(std::size_t frame, std::size_t camera) const {
@@ -116,7 +117,8 @@ cv::Mat Drive::read_segmentation(std::size_t frame, std::size_t camera) const {
   const ImageStream& stream = found->second;
   const std::int64_t t_ns = image_stamp_ns(frame, camera);
   if (!std::binary_search(stream.stamps_ns.begin(), stream.stamps_ns.end(), t_ns)) return {};
-  return impl_->decode(stream.folder / stream.names.at(t_ns), camera);
+  constexpr GreyRange kClasses{0, 256};  // an index stays what it is
+  return impl_->decode(stream.folder / stream.names.at(t_ns), camera, kClasses);
 }
 
 void Drive::correct(const EffectSizes& sizes) {

@@ -90,6 +90,7 @@ class Loader {
       const Camera lens = file ? file->camera.camera : Camera{};
       content_.images.push_back(
           load_image_stream(folder, {lens.width, lens.height}, limits, options_, problems_));
+      warn_of_grey_range(content_.images.back(), problems_);
       MountedCamera mounted = file ? file->camera : MountedCamera{};
       mounted.name = folder.filename().string();
       content_.rig.cameras.push_back(std::move(mounted));

@@ -147,6 +147,15 @@ void warn_of_unnamed_images(const ImageStream& stream,
                    "a row for each image");
 }
 
+// The range of the 16-bit images among those that can be used.
+std::optional<GreyRange> greys_of(const ImageStream& stream,
+                                  const std::vector<std::int64_t>& deep_ns,
+                                  int num_threads) {
+  std::vector<std::filesystem::path> files;
+  for (const std::int64_t t_ns : deep_ns) files.push_back(stream.folder / stream.names.at(t_ns));
+  return measured_grey_range(files, num_threads);
+}
+
 bool read_file(const std::filesystem::path& file, std::vector<std::uint8_t>& content) {
   constexpr std::uint64_t kLargest = 1u << 30;
   const RegularFile in(file);
@@ -230,6 +239,7 @@ ImageStream load_image_stream(const std::filesystem::path& sensor_folder,
     headers[i] = inspect_image(stream.folder / stream.names.at(rows[i].t_ns));
   });
   Sha256 digest;
+  std::vector<std::int64_t> deep_ns;
   OtherSizes other_sizes(size);
   const std::size_t errors_before = problems.error_count();
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -238,9 +248,12 @@ ImageStream load_image_stream(const std::filesystem::path& sensor_folder,
     if (!too_large(headers[i], options.max_image_megapixels) &&
         other_sizes.add(headers[i], rows[i], name))
       continue;
-    if (accept(headers[i], rows[i], table.string(), name, options.max_image_megapixels, problems))
+    if (accept(headers[i], rows[i], table.string(), name, options.max_image_megapixels, problems)) {
       stream.stamps_ns.push_back(rows[i].t_ns);
+      if (headers[i].bits == 16) deep_ns.push_back(rows[i].t_ns);
+    }
   }
+  stream.greys = greys_of(stream, deep_ns, options.num_threads);
   stream.digest = digest.hex();
   stream.repeats = find_repeats(stream, rows, headers);
   other_sizes.report(table.string(), problems);
@@ -252,9 +265,20 @@ ImageStream load_image_stream(const std::filesystem::path& sensor_folder,
   return stream;
 }
 
+void warn_of_grey_range(const ImageStream& stream, ProblemList& problems) {
+  if (!stream.greys || stream.greys->span == GreyRange{}.span) return;
+  const auto& [black, span] = *stream.greys;
+  problems.warning(stream.folder.string(), 0, "images",
+                   "16-bit greys of which " + std::to_string(black) + " to " +
+                       std::to_string(black + span - 1) + " are used; they are read as 0 to 255",
+                   "all 16 bits in use, or 8-bit images");
+}
+
 namespace {
 
-cv::Mat decode_any(const std::vector<std::uint8_t>& content, const ImageHeader& header) {
+cv::Mat decode_any(const std::vector<std::uint8_t>& content,
+                   const ImageHeader& header,
+                   const GreyRange& greys) {
   if (auto grey = decode_grey_png(content, header)) return *grey;
   if (auto grey = decode_grey_jpeg(content, header)) return *grey;
   // What libjpeg refused OpenCV would fill up; only CMYK is left to it.
@@ -263,7 +287,11 @@ cv::Mat decode_any(const std::vector<std::uint8_t>& content, const ImageHeader& 
   const bool plain_grey = header.channels == 1 && header.bits == 8 && !header.interlaced;
   if (header.format == ImageFormat::kPng && (plain_grey || !png_chunks_whole(content))) return {};
   try {
-    return cv::imdecode(content, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+    if (header.bits != 16)
+      return cv::imdecode(content, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+    const cv::Mat deep = cv::imdecode(
+        content, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+    return deep.type() == CV_16UC1 ? to_8_bits(deep, greys) : deep;
   } catch (const cv::Exception&) {
     return {};
   }
@@ -273,7 +301,8 @@ cv::Mat decode_any(const std::vector<std::uint8_t>& content, const ImageHeader& 
 
 cv::Mat decode_image_file(const std::filesystem::path& file,
                           const ImageSize& size,
-                          std::string& why) {
+                          std::string& why,
+                          const GreyRange& greys) {
   thread_local std::vector<std::uint8_t> content;
   if (!read_file(file, content)) {
     why = to_text(ImageState::kMissing);
@@ -288,7 +317,7 @@ cv::Mat decode_image_file(const std::filesystem::path& file,
     why = size_text(header.width, header.height) + " pixels";
     return {};
   }
-  cv::Mat image = decode_any(content, header);
+  cv::Mat image = decode_any(content, header, greys);
   if (image.type() != CV_8UC1 || image.cols != size.width || image.rows != size.height)
     image.release();
   if (image.empty()) why = "damaged pixels";

@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
 #include "drive/drive_options.hpp"
+#include "drive/images/grey_range.hpp"
 #include "drive/problem_list.hpp"
 #include "drive/stamps.hpp"
 #include "drive/stream_summary.hpp"
@@ -51,6 +53,7 @@ struct ImageStream {
   StreamSummary summary;
   std::string digest;                   ///< of stamps, names and file sizes
   std::vector<RepeatedImages> repeats;  ///< of five images and more
+  std::optional<GreyRange> greys;       ///< of its 16-bit images; empty: it has none
 };
 
 /// Reads `sensor_folder`/data.csv and looks at the head and tail of every image file. A table fault
@@ -62,11 +65,14 @@ struct ImageStream {
                                             const DriveOptions& options,
                                             ProblemList& problems);
 
-/// Decodes one file to grey 8 bit (`unchanged`: without conversion, for class images). On failure
-/// empty, and `why` describes the fault. Checks the size before decoding; safe to call
-/// concurrently.
+/// Warns if the camera's 16-bit images use a part of their bits, and says how they are read.
+void warn_of_grey_range(const ImageStream& stream, ProblemList& problems);
+
+/// Decodes one file to grey 8 bit; `greys` of a 16-bit image become 0 to 255. On failure empty, and
+/// `why` describes the fault. Checks the size before decoding; safe to call concurrently.
 [[nodiscard]] cv::Mat decode_image_file(const std::filesystem::path& file,
                                         const ImageSize& size,
-                                        std::string& why);
+                                        std::string& why,
+                                        const GreyRange& greys = {});
 
 }  // namespace roadbook
