@@ -21,6 +21,36 @@ ordered_json to_json(const std::vector<Problem>& problems) {
   return list;
 }
 
+namespace {
+
+ordered_json number_or_null(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json();
+}
+
+ordered_json cameras_json(const std::vector<CameraFigures>& cameras) {
+  auto list = ordered_json::array();
+  for (const CameraFigures& c : cameras) {
+    ordered_json residual;
+    if (c.residual)
+      residual = {{"radial", c.residual->radial_px},
+                  {"tangential", c.residual->tangential_px},
+                  {"horizontal", c.residual->horizontal_px},
+                  {"vertical", c.residual->vertical_px}};
+    list.push_back({{"session", c.session},
+                    {"camera", c.camera},
+                    {"keyframes", c.keyframes},
+                    {"corners", c.corners},
+                    {"landmarks", c.landmarks},
+                    {"fit_share", number_or_null(c.fit_share)},
+                    {"views", number_or_null(c.views)},
+                    {"residual_px", residual},
+                    {"paired_share", number_or_null(c.paired_share)}});
+  }
+  return list;
+}
+
+}  // namespace
+
 ordered_json to_json(const MapSummary& summary) {
   ordered_json object = {
       {"keyframes", summary.keyframes},
@@ -28,9 +58,13 @@ ordered_json to_json(const MapSummary& summary) {
       {"sessions", summary.sessions},
       {"loops", {{"accepted", summary.loops_accepted}, {"rejected", summary.loops_rejected}}},
       {"reprojection_px",
-       {{"median", summary.reprojection_median_px}, {"rms", summary.reprojection_rms_px}}},
+       {{"median", number_or_null(summary.reprojection_median_px)},
+        {"rms", number_or_null(summary.reprojection_rms_px)}}},
       {"scale",
-       {{"source", scale_source_name(summary.scale_source)}, {"sigma", summary.scale_sigma}}}};
+       {{"source", scale_source_name(summary.scale_source)},
+        {"sigma", number_or_null(summary.scale_sigma)}}},
+      {"pieces", summary.components},
+      {"cameras", cameras_json(summary.cameras)}};
   object["vehicle"] = vehicle_json(sources_of(summary.vehicles));
   if (summary.ate_median_m && summary.ate_p95_m)
     object["truth"] = {{"ate_median_m", *summary.ate_median_m}, {"ate_p95_m", *summary.ate_p95_m}};

@@ -56,6 +56,7 @@ struct Keyframe {
   double travelled_m = 0.0;  ///< since the session's start, along the map's poses; gaps add nothing
   bool reversing = false;
   bool after_gap = false;  ///< the motion from the previous keyframe is not known from odometry
+  int piece = 0;           ///< poses of different pieces have no common place: nothing joins them
 };
 
 struct Landmark {

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/format.hpp"
+#include "mapping/pieces.hpp"
 #include "mapping/store/map_file.hpp"
 #include "workflows/people/people_store.hpp"
 #include "workflows/session_drives.hpp"
@@ -155,7 +156,7 @@ GroundModel ground_below_people(const Map& map, const PeopleDetectOptions& optio
 
 DetectResult detect_people(const DetectRequest& request, Messages& messages) {
   MapUpdate update(request.map);  // locks the map between reading and writing
-  const Map map = load_map(request.map);
+  const Map map = load_joined_map(request.map);
   std::vector<std::size_t> asked;
   for (const std::string& name : request.sessions)
     asked.push_back(session_index(map, "--session", name));

@@ -4,6 +4,7 @@
 
 #include "exchange/export/picture_edge.hpp"
 #include "mapping/layers/map_layers.hpp"
+#include "mapping/pieces.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_reading.hpp"
 #include "semantics/labels/label_classes.hpp"
@@ -45,6 +46,7 @@ std::vector<Problem> labels_without_place(const ExportRequest& request) {
 
 ExportResult export_place(const ExportRequest& request) {
   const MapReading reading(request.map);
+  require_one_piece(request.map);
   ExportResult result;
   result.files =
       export_map(request.map, request.format, request.output, request.options, &result.left_out);

@@ -7,6 +7,7 @@
 #include "exchange/layers/network_layers.hpp"
 #include "exchange/layers/path_layers.hpp"
 #include "exchange/layers/speed_layers.hpp"
+#include "mapping/pieces.hpp"
 #include "mapping/session_car.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/labels/label_layers.hpp"
@@ -46,7 +47,7 @@ std::optional<FrictionCarry> carry_friction(MapUpdate& update,
 
 RoadsResult find_roads(const RoadsRequest& request, const Messages& messages) {
   MapUpdate update(request.map);  // locks the map between reading and writing
-  const Map map = load_map(request.map);
+  const Map map = load_joined_map(request.map);
   const MapLayers layers(request.map);
   const auto previous = stored_network(layers);
   const auto passes = driven_passes(map);

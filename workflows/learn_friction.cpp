@@ -8,6 +8,7 @@
 #include "exchange/layers/friction_layers.hpp"
 #include "exchange/layers/path_layers.hpp"
 #include "exchange/layers/stored_paths.hpp"
+#include "mapping/pieces.hpp"
 #include "mapping/store/map_file.hpp"
 #include "speedmap/property_map/slice.hpp"
 #include "workflows/property_table.hpp"
@@ -129,7 +130,7 @@ void refuse_nothing(const FrictionRequest& request, const FrictionSummary& summa
 FrictionResult learn_friction(const FrictionRequest& request, Messages& messages) {
   check_slice_options(request);
   MapUpdate update(request.map);  // locks the map between reading and writing
-  const Map map = load_map(request.map);
+  const Map map = load_joined_map(request.map);
   const MapLayers layers(request.map);
   const Drive drive = Drive::open(request.drive);
   const int index = session_number(map, drive, request.map);

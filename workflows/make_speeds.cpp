@@ -7,6 +7,7 @@
 #include "exchange/layers/path_layers.hpp"
 #include "exchange/layers/speed_layers.hpp"
 #include "exchange/layers/stored_paths.hpp"
+#include "mapping/pieces.hpp"
 #include "mapping/session_car.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/labels/label_layers.hpp"
@@ -124,7 +125,7 @@ std::int64_t time_of(const Map& map, double days_later) {
 
 SpeedsResult make_speeds(const SpeedsRequest& request) {
   MapUpdate update(request.map);  // locks the map between reading and writing
-  const Map map = load_map(request.map);
+  const Map map = load_joined_map(request.map);
   SpeedsResult result;
   const auto [config, kept] =
       speeds_rules(MapLayers(request.map), request.config, vehicle_width_m(map));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drive/vehicle_yaml.hpp"
+#include "mapping/pieces.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/overhead/overhead_layers.hpp"
 #include "workflows/session_drives.hpp"
@@ -14,7 +15,7 @@ OverheadResult overhead_of_map(const OverheadRequest& request, Messages& message
   if (!request.vehicle.empty()) options.vehicle = load_vehicle(request.vehicle);
   OverheadResult result;
   MapUpdate update(request.map);  // locks the map between reading and writing
-  result.map = load_map(request.map);
+  result.map = load_joined_map(request.map);
   const auto drives = open_session_drives(request.map, result.map, request.drives, messages);
   std::vector<const Drive*> pointers;
   for (const auto& drive : drives) pointers.push_back(drive ? &*drive : nullptr);

@@ -11,16 +11,41 @@
 namespace roadbook {
 namespace {
 
+std::string or_unknown(const std::optional<double>& value, int decimals) {
+  return value ? fixed(*value, decimals) : "-";
+}
+
+// One line a camera. The session is named if there are several.
+void say_cameras(const Console& console, const MapSummary& summary) {
+  for (const CameraFigures& c : summary.cameras) {
+    std::string line = summary.sessions > 1 ? c.session + "/" + c.camera : c.camera;
+    line += ": " + std::to_string(c.landmarks) + " landmarks, ";
+    line += c.fit_share ? fixed(100.0 * *c.fit_share, 0) + " %" : std::string("-");
+    line += " of " + std::to_string(c.corners) + " corners fit, mean residual [px] ";
+    line += c.residual ? "radial " + fixed(c.residual->radial_px, 2) + ", tangential " +
+                             fixed(c.residual->tangential_px, 2) + ", horizontal " +
+                             fixed(c.residual->horizontal_px, 2) + ", vertical " +
+                             fixed(c.residual->vertical_px, 2)
+                       : std::string("-");
+    if (c.paired_share) line += ", " + fixed(100.0 * *c.paired_share, 0) + " % of images paired";
+    console.say(line);
+  }
+}
+
 void say_summary(const Console& console, const MapSummary& summary) {
   console.say(std::to_string(summary.keyframes) + " keyframes, " +
               std::to_string(summary.landmarks) + " landmarks, " +
               std::to_string(summary.loops_accepted) + " loops accepted, " +
               std::to_string(summary.loops_rejected) + " rejected");
-  console.say("reprojection error " + fixed(summary.reprojection_median_px, 2) + " px median, " +
-              fixed(summary.reprojection_rms_px, 2) + " px rms");
+  console.say("reprojection error " + or_unknown(summary.reprojection_median_px, 2) +
+              " px median, " + or_unknown(summary.reprojection_rms_px, 2) + " px rms");
+  say_cameras(console, summary);
+  if (summary.components > 1)
+    console.say(std::to_string(summary.components) +
+                " pieces that nothing joins: other commands refuse this map");
   console.say("scale from " + std::string(scale_source_name(summary.scale_source)) +
-              (summary.scale_sigma > 0.0 ? ", +- " + fixed(100.0 * summary.scale_sigma, 2) + " %"
-                                         : std::string()));
+              (summary.scale_sigma ? ", +- " + fixed(100.0 * *summary.scale_sigma, 2) + " %"
+                                   : std::string(", +- unknown")));
   say_vehicle(console, sources_of(summary.vehicles));
   if (summary.ate_median_m && summary.ate_p95_m)
     console.say("against the drive's truth: " + fixed(*summary.ate_median_m, 3) + " m median, " +
@@ -52,7 +77,7 @@ nlohmann::ordered_json result_of_last_run(const std::filesystem::path& map,
   const auto note = values.find("place.summary");
   if (note != values.end()) {
     const auto run = nlohmann::ordered_json::parse(note->second, nullptr, false);
-    for (const char* key : {"reprojection_px", "truth", "rows"})
+    for (const char* key : {"reprojection_px", "truth", "rows", "cameras"})
       if (run.is_object() && run.contains(key)) result[key] = run[key];
   } else {
     result["reprojection_px"] = {{"median", nullptr}, {"rms", nullptr}};

@@ -21,6 +21,8 @@ Verb map_verb() {
                     "use labelled rows of equal spaces as constraints");
         options.add("--solver", solver.get(), "solver of the bundle adjustment").choices = {
             "own", "ceres"};
+        options.add("--apart", &command->options.gate.apart,
+                    "keep parts that nothing joins as pieces of the map");
         options.add("--replace", &command->options.replace,
                     "build a map of these drives alone, replacing an existing one");
         options.add("--seed", &command->options.seed, "seed of all random numbers");

@@ -11,7 +11,10 @@
 
 #include "drive/drive.hpp"
 #include "drive/true_poses.hpp"
+#include "mapping/cameras/camera_doubts.hpp"
+#include "mapping/pieces.hpp"
 #include "mapping/pipeline/checkpoint_blobs.hpp"
+#include "mapping/pipeline/map_gate.hpp"
 #include "mapping/pipeline/map_inputs.hpp"
 #include "mapping/pipeline/map_stages.hpp"
 #include "mapping/pipeline/odometry_checkpoint.hpp"
@@ -140,7 +143,9 @@ void count_contents(const Map& map, MapSummary& summary) {
   for (const auto& loop : map.loops)
     (loop.accepted ? summary.loops_accepted : summary.loops_rejected) += 1;
   summary.scale_source = map.sessions.front().scale_source;
-  summary.scale_sigma = map.sessions.front().scale_sigma;
+  if (map.sessions.front().scale_sigma > 0.0)
+    summary.scale_sigma = map.sessions.front().scale_sigma;
+  summary.components = static_cast<std::size_t>(piece_count(map));
   for (const Session& session : map.sessions)
     summary.vehicles.push_back({session.name, session.vehicle_source});
 }
@@ -164,8 +169,11 @@ void fill_summary(const std::vector<Drive>& drives,
                   const Adjusted& adjusted,
                   MapSummary& summary) {
   count_contents(map, summary);
-  summary.reprojection_median_px = kFullPerHalfPixel * adjusted.result.reprojection_median_px;
-  summary.reprojection_rms_px = kFullPerHalfPixel * adjusted.result.reprojection_rms_px;
+  const auto& inlier = adjusted.result.inlier;
+  if (std::find(inlier.begin(), inlier.end(), 1) != inlier.end()) {
+    summary.reprojection_median_px = kFullPerHalfPixel * adjusted.result.reprojection_median_px;
+    summary.reprojection_rms_px = kFullPerHalfPixel * adjusted.result.reprojection_rms_px;
+  }
   for (const auto& drive : drives) {
     summary.drive_seconds += static_cast<double>(drive.frame_stamp_ns(drive.frame_count() - 1) -
                                                  drive.frame_stamp_ns(0)) *
@@ -246,7 +254,9 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   auto loops = clock.run("loops", [&] { return loops_of(input, options, build, progress); });
   const auto relaxed =
       clock.run("pose graph", [&] { return relax_poses(input, loops, options, progress); });
-  summary.components = static_cast<std::size_t>(relaxed.components);
+  const GateInputs gate = gate_inputs(folders, map_path);
+  require_joined(input, relaxed, gate, options.gate);
+  require_loops(loops, gate, options.gate);
   if (relaxed.components > 1)
     summary.warnings.push_back({Severity::kWarning, folders.front().string(), 0, "components",
                                 std::to_string(relaxed.components) + " that no loop closure joins",
@@ -254,8 +264,22 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   const auto adjusted = clock.run("bundle adjustment",
                                   [&] { return adjust(input, loops, relaxed, options, progress); });
 
+  clock.run("cameras", [&] {
+    summary.cameras = camera_figures(input, drives, adjusted.stage, adjusted.result);
+    CameraDoubtOptions doubt;
+    doubt.num_threads = options.num_threads;
+    const auto doubts = to_problems(doubt_cameras(input, adjusted.T_map_vehicle, doubt), drives);
+    require_evidence(input, adjusted, summary.cameras, doubts, gate, options.gate);
+    const auto idle = warnings_of_idle_cameras(summary.cameras, input, gate, options.gate);
+    summary.warnings.insert(summary.warnings.end(), idle.begin(), idle.end());
+    summary.warnings.insert(summary.warnings.end(), doubts.begin(), doubts.end());
+    return 0;
+  });
+
   const auto map = clock.run("assemble", [&] {
     Map assembled = map_of_stages(input, loops, adjusted, options);
+    for (std::size_t k = 0; k < assembled.keyframes.size(); ++k)
+      assembled.keyframes[k].piece = relaxed.component[k];
     for (std::size_t i = 0; i < drives.size(); ++i) {
       Session session = session_of(drives[i], cars[i], options, map_path);
       const int scale = adjusted.stage.scale_of_session[i];
@@ -283,6 +307,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
     if (options.more_layers) finish.layers = options.more_layers(map);
     auto meta = inputs_meta(drives, options);
     meta["gauge"] = "first keyframe fixed";
+    if (summary.components > 1) meta[kPiecesKey] = std::to_string(summary.components);
     build.finish(map, meta, finish);
     return 0;
   });

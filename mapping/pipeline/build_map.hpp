@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/progress.hpp"
+#include "mapping/cameras/camera_figures.hpp"
 #include "mapping/map.hpp"
 #include "mapping/pipeline/map_options.hpp"
 #include "mapping/pipeline/parking_row_prior.hpp"
@@ -37,14 +38,16 @@ struct MapSummary {
   std::size_t sessions = 0;
   std::size_t loops_accepted = 0;
   std::size_t loops_rejected = 0;
-  double reprojection_median_px = 0.0;  ///< length of the residual, full-size image
-  double reprojection_rms_px = 0.0;     ///< per coordinate, full-size image
+  /// Length of the residual, full-size image; empty without observations.
+  std::optional<double> reprojection_median_px;
+  std::optional<double> reprojection_rms_px;  ///< per coordinate, full-size image
   ScaleSource scale_source = ScaleSource::kFree;
-  double scale_sigma = 0.0;            ///< relative
+  std::optional<double> scale_sigma;   ///< relative; empty where it is not known
   std::optional<double> ate_median_m;  ///< against the drive's truth, SE(3) aligned
   std::optional<double> ate_p95_m;
   double drive_seconds = 0.0;            ///< recorded time, for the real-time factor
   std::size_t components = 1;            ///< parts of the drives that nothing joins
+  std::vector<CameraFigures> cameras;    ///< of each drive in turn
   std::optional<EqualRowsUsed> rows;     ///< empty without MapOptions::equal_rows
   std::vector<SessionVehicle> vehicles;  ///< by session
   std::vector<StageTime> stages;
@@ -66,7 +69,8 @@ struct MapSummary {
 /// `keep_tables` are kept, and `MapSummary::dropped` names the others.
 ///
 /// Throws BadInput (a drive cannot be read; the map is damaged, or its drives are not the first of
-/// `drives` and `replace` is not set), Refused (too few keyframes), StorageError, Interrupted.
+/// `drives` and `replace` is not set), Refused (too little evidence: MapGateOptions), StorageError,
+/// Interrupted. A refused build leaves the existing map as it is.
 MapSummary build_map(const std::vector<std::filesystem::path>& drives,
                      const std::filesystem::path& map,
                      const MapOptions& options,

@@ -38,11 +38,12 @@ std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& optio
   return digest.hex();
 }
 
-// The checkpoints do not depend on the labels whose rows straighten the map; the map does.
+// The checkpoints do not depend on the labels whose rows straighten the map, nor on whether parts
+// are kept apart; the map does.
 std::string map_inputs(const std::vector<Drive>& drives, const MapOptions& options) {
   Sha256 digest;
   digest.update(inputs_key(drives, options) + " " + std::to_string(kMapSchemaVersion) + " " +
-                options.rows_digest);
+                options.rows_digest + (options.gate.apart ? " apart" : ""));
   return digest.hex();
 }
 

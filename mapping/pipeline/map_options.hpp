@@ -19,6 +19,18 @@
 
 namespace roadbook {
 
+/// The least evidence from which a map is made; with less it is refused.
+struct MapGateOptions {
+  int min_landmarks = 30;          ///< seen by each drive
+  int min_views = 8;               ///< of landmarks, of a keyframe that the images hold
+  double min_held_share = 0.5;     ///< of each drive's keyframes that the images hold
+  double min_camera_views = 1.5;   ///< mean of a camera in use, by keyframe with its image
+  double min_cameras_share = 0.5;  ///< of each drive's cameras that are in use
+  int alike_loops = 20;  ///< with fewer pairs of alike places their accepted share is not judged
+  double min_alike_share = 0.1;  ///< accepted, of the pairs of places that look alike
+  bool apart = false;            ///< parts that nothing joins are kept as pieces
+};
+
 /// How to build a map.
 struct MapOptions {
   TrackDriveOptions tracking;
@@ -30,6 +42,7 @@ struct MapOptions {
   int min_views = 3;        ///< key points of a landmark that is stored
   bool covariances = true;  ///< of poses and landmarks, from the normal equations
   int min_keyframes = 3;    ///< a drive with fewer is refused
+  MapGateOptions gate;
   /// Measures of the vehicle; they replace vehicle.yaml of the drives.
   std::optional<VehicleMeasures> vehicle;
   EffectSizes model;     ///< known imperfections; corrected in rig and readings before mapping

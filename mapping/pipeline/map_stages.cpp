@@ -52,7 +52,7 @@ void rechain(VoResult& odometry,
   }
 }
 
-// Map frames and keyframes alone.
+// Map frames and keyframes alone; all in one piece.
 Map map_of_poses(const MappingInput& input, const Adjusted& adjusted) {
   Map map;
   const auto& keyframes = input.odometry.keyframes;

@@ -46,6 +46,7 @@ class Rows {
     if (statement_.type(column) == SQLITE_NULL) return std::nullopt;
     return real(column);
   }
+  [[nodiscard]] int columns() const { return statement_.columns(); }
   [[nodiscard]] bool boolean(int column) const { return integer(column) != 0; }
   [[nodiscard]] std::string text(int column) const { return statement_.text(column); }
   [[nodiscard]] std::string_view blob(int column) const { return statement_.bytes(column); }
@@ -166,6 +167,8 @@ void read_poses(const SqlDatabase& database, Map& map) {
     k.travelled_m = rows.real(7);
     k.reversing = rows.boolean(8);
     k.after_gap = rows.boolean(9);
+    if (rows.columns() > 10) k.piece = rows.integer(10);  // maps of earlier programs have one piece
+    if (k.piece < 0) rows.fail(10, std::to_string(k.piece), "a piece from 0");
     map.keyframes.push_back(k);
   }
 }

@@ -38,7 +38,7 @@ constexpr std::array<TableSql, 12> kTables{{
      "id INTEGER PRIMARY KEY, session INTEGER NOT NULL, t_ns INTEGER NOT NULL, "
      "drive_frame INTEGER NOT NULL, map_frame INTEGER NOT NULL, T_frame_vehicle BLOB NOT NULL, "
      "covariance BLOB NOT NULL, travelled_m REAL NOT NULL, reversing INTEGER NOT NULL, "
-     "after_gap INTEGER NOT NULL"},
+     "after_gap INTEGER NOT NULL, piece INTEGER NOT NULL"},
     {"landmarks",
      "id INTEGER PRIMARY KEY, map_frame INTEGER NOT NULL, x REAL NOT NULL, y REAL NOT NULL, "
      "z REAL NOT NULL, covariance BLOB NOT NULL, ground INTEGER NOT NULL"},

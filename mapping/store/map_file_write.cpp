@@ -77,7 +77,7 @@ void write_poses(const SqlDatabase& database, const Map& map) {
     frame.bind(1, static_cast<std::int64_t>(i)).bind_blob(2, pose).run();
   }
   SqlStatement keyframe =
-      database.prepare("INSERT INTO keyframes VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      database.prepare("INSERT INTO keyframes VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
     const Keyframe& k = map.keyframes[i];
     const std::string pose = pack_pose(k.T_frame_vehicle);
@@ -85,7 +85,8 @@ void write_poses(const SqlDatabase& database, const Map& map) {
     keyframe.bind(1, static_cast<std::int64_t>(i)).bind(2, k.session).bind(3, k.t_ns);
     keyframe.bind(4, k.drive_frame).bind(5, k.map_frame).bind_blob(6, pose);
     keyframe.bind_blob(7, covariance).bind(8, k.travelled_m);
-    keyframe.bind(9, k.reversing ? 1 : 0).bind(10, k.after_gap ? 1 : 0).run();
+    keyframe.bind(9, k.reversing ? 1 : 0).bind(10, k.after_gap ? 1 : 0);
+    keyframe.bind(11, k.piece).run();
   }
 }
 

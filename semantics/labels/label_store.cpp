@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/wall_clock.hpp"
+#include "mapping/pieces.hpp"
 #include "mapping/store/map_event_log.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/labels/classes_in_use.hpp"
@@ -19,7 +20,7 @@ namespace roadbook {
 struct LabelStore::Impl {
   explicit Impl(const std::filesystem::path& path)
       : log(path, kLabelLog),
-        map(load_map(path)),
+        map(load_joined_map(path)),
         file(path.string()),
         replay(log.events(), file) {}
 

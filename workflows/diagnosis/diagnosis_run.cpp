@@ -11,6 +11,7 @@
 #include "diagnosis/streams/drive_streams.hpp"
 #include "diagnosis/streams/stated_wheelbase.hpp"
 #include "drive/drive.hpp"
+#include "mapping/pieces.hpp"
 #include "mapping/session_track.hpp"
 #include "mapping/store/map_file.hpp"
 #include "workflows/diagnosis/localised_drive.hpp"
@@ -82,7 +83,7 @@ DiagnosisRun looked_into(const DiagnosisRequest& request,
     run.diagnosis = diagnose_streams(streams, readings, request.drive.string(), options);
     return run;
   }
-  const Map map = load_map(request.map);
+  const Map map = load_joined_map(request.map);
   if (const auto session = find_session(map, drive)) {
     run.diagnosis = diagnose_through_map(map, *session, drive, options);
     if (SightingReadings people = people_in_map(request.map, map, *session, drive);

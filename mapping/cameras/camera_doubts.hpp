@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "drive/drive.hpp"
+#include "mapping/cameras/camera_fit.hpp"
+#include "mapping/joined_tracks.hpp"
+
+namespace roadbook {
+
+// Cameras that contradict the motion which the whole rig found, with the parameter of the
+// calibration that explains it best.
+
+struct CameraDoubt {
+  int session = 0;
+  int camera = 0;
+  std::string field;  ///< in the warning: "focal length", "images", ...
+  std::string got;
+  std::string want;
+};
+
+/// Evidence about one camera, for studies.
+struct CameraEvidence {
+  int session = 0;
+  int camera = 0;
+  std::size_t tracks = 0;
+  double fit_share = -1.0;      ///< of the tracks; -1: none
+  double repeated_share = 0.0;  ///< of keyframes with exactly the corners before
+  std::vector<CameraFit> fits;  ///< of each group of parameters
+};
+
+struct CameraDoubtOptions {
+  double inlier_px = 1.0;       ///< of a track that fits, half-size image
+  double rotation_rad = 0.009;  ///< sizes that matter
+  double focal = 0.006;         ///< relative
+  double centre_share = 0.012;  ///< of the focal length
+  double position_m = 0.15;
+  double delay_s = 0.010;
+  double min_sigmas = 5.0;  ///< a smaller effect may be chance
+  double min_gain = 0.02;   ///< share of the misfit that the effect explains
+  double of_largest = 0.6;  ///< other cameras' effects below this share of the largest follow
+                            ///< from it
+  int num_threads = 0;
+};
+
+[[nodiscard]] std::vector<CameraEvidence> camera_evidence(
+    const MappingInput& input,
+    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+    const CameraDoubtOptions& options = {});
+
+/// What is likely wrong with the cameras: images that repeat, images of two cameras exchanged, the
+/// parameter of a camera that explains its misfit best. One doubt a camera at most. Rigs of one
+/// camera are not doubted, because nothing contradicts it. Deterministic.
+[[nodiscard]] std::vector<CameraDoubt> doubt_cameras(
+    const MappingInput& input,
+    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+    const CameraDoubtOptions& options = {});
+
+/// The doubts as warnings about the cameras' folders.
+[[nodiscard]] std::vector<Problem> to_problems(const std::vector<CameraDoubt>& doubts,
+                                               const std::vector<Drive>& drives);
+
+}  // namespace roadbook
