@@ -5,7 +5,7 @@
 
 Works on a copy of MAP, which needs an overhead image. First draws labels until the map has
 --labels of them. Then --pages pages work at the same time: each looks at tiles and lists, draws,
-moves and deletes labels, undoes, and keeps a stream of events open. Every tenth of the time the
+changes and deletes labels (as many as it draws), and keeps a stream of events open. Every tenth of the time the
 script measures the server's memory, its open files, the size of the map file and the answer times.
 It fits a line through the measurements and prints what --hours of the same work would add.
 
@@ -85,9 +85,9 @@ class Page:
             self.ask("GET", "/api/history")
         elif choice < 0.5:
             self.ask("GET", "/api/labels")
-        elif choice < 0.75 or not self.own:
+        elif choice < 0.68 or not self.own:
             self.draw(bounds)
-        elif choice < 0.9:
+        elif choice < 0.82:
             label = self.random.choice(list(self.own))
             stored = self.ask("PUT", f"/api/labels/{label}",
                               {"version": self.own[label], "who": self.who,
@@ -207,7 +207,7 @@ def main():
             there = {label["id"] for label in pages[0].ask("GET", "/api/labels")["labels"]}
         finally:
             server.terminate()
-            server.wait(60)
+            server.wait(300)
     lost = [label for page in pages for label in page.own if label not in there]
     faults = [fault for page in pages for fault in page.faults]
     later = rows[1:]  # caches fill in the first tenth
