@@ -68,7 +68,7 @@ std::vector<Jump> jumps_of(std::span<const CounterValue> values, double range) {
 bool fits(const std::vector<Jump>& jumps, double range, double period, double least) {
   if (range > period * (1.0 + 1e-9)) return false;
   return std::all_of(jumps.begin(), jumps.end(), [&](const Jump& jump) {
-    const double slack = std::max({least, std::abs(jump.expected), 1e-3 * period});
+    const double slack = std::max(least, 2.0 * std::abs(jump.expected) + 1e-3 * period);
     return std::abs(jump.size - period) <= std::min(slack, 0.25 * period);
   });
 }
@@ -81,11 +81,12 @@ bool runs_through(std::span<const CounterValue> values, double range) {
   return run >= range;
 }
 
+// Whole turns, a power of two, a round number: in this order, where one lies near the mean.
 double nice_period(double mean, double slack, double range, double whole) {
-  const double turns = std::round(mean / whole) * whole;
-  if (turns > range && std::abs(turns - mean) <= slack) return turns;
-  const double bits = std::exp2(std::round(std::log2(mean)));
-  if (bits > range && std::abs(bits - mean) <= slack) return bits;
+  for (const double nice :
+       {std::round(mean / whole) * whole, std::exp2(std::round(std::log2(mean))),
+        std::round(mean / 100.0) * 100.0})
+    if (nice > range && std::abs(nice - mean) <= slack) return nice;
   return std::max(std::round(mean), range + 1.0);
 }
 

@@ -175,6 +175,13 @@ std::optional<double> median_way_factor(const std::vector<Window>& windows, doub
   return median(std::move(factors));
 }
 
+// The images showed enough corners, but hardly one agreed with a motion near that of the wheels.
+bool is_lost(const VoKeyframe& keyframe) {
+  std::size_t corners = 0;
+  for (const Features& features : keyframe.features) corners += features.size();
+  return keyframe.inliers < kFewestInliers && corners >= 4 * kFewestInliers;
+}
+
 }  // namespace
 
 bool WheelComparison::doubts_all() const {
@@ -194,7 +201,7 @@ bool may_be_wrong(const VoResult& odometry, const WheelOdometry& wheels, double 
   double beyond = 0.0;
   for (std::size_t k = 1; k < keyframes.size(); ++k) {
     if (!keyframes[k].wheels) continue;
-    if (k > 1 && keyframes[k].inliers < kFewestInliers) return true;
+    if (k > 1 && is_lost(keyframes[k])) return true;
     beyond += keyframes[k].turn_beyond_wheels_rad;
     turned += keyframes[k].wheels->motion.z();
     if (k > kSummed && keyframes[k - kSummed].wheels) {

@@ -1,0 +1,152 @@
+#include "vo/wheel_doubts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/random.hpp"
+#include "base/se3.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kSpeed = 2.0;   // [m/s]
+constexpr double kRadius = 8.0;  // [m]: bends left and right in turn
+constexpr double kSeconds = 40.0;
+constexpr double kSightScale = 1.1;  // cameras alone know lengths up to a factor
+
+double curvature(double s) { return std::fmod(s, 20.0) < 10.0 ? 1.0 / kRadius : -1.0 / kRadius; }
+
+// Angles of the wheels every 20 ms, by hand: each rolls on its own circle.
+std::vector<WheelReading> readings_of(const WheelModel& model) {
+  std::vector<WheelReading> readings;
+  double left = 0.0;
+  double right = 0.0;
+  for (int i = 0; i <= 50 * static_cast<int>(kSeconds); ++i) {
+    readings.push_back({std::int64_t{i} * 20'000'000, left, right, std::nullopt});
+    const double step = kSpeed * 0.02;
+    const double across = 0.5 * model.track_width_m * curvature(kSpeed * 0.02 * i);
+    left += step * (1.0 - across) / model.radius_left_m;
+    right += step * (1.0 + across) / model.radius_right_m;
+  }
+  return readings;
+}
+
+// What the cameras alone make of the drive: a keyframe every 0.1 s, right but for noise and scale.
+VoResult sight_of() {
+  Random random(11, "sight");
+  VoResult sight;
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  for (int i = 0; i < 10 * static_cast<int>(kSeconds); ++i) {
+    VoKeyframe keyframe;
+    keyframe.t_ns = std::int64_t{i} * 100'000'000;
+    keyframe.T_odom_vehicle = T;
+    keyframe.inliers = 200;
+    sight.keyframes.push_back(keyframe);
+    for (int part = 0; part < 5; ++part) {
+      const double s = kSpeed * (0.1 * i + 0.02 * part);
+      T = T * pose_from_planar(kSightScale * kSpeed * 0.02, 0.0, kSpeed * 0.02 * curvature(s));
+    }
+    T = T * pose_from_planar(random.normal(0.0, 0.003), random.normal(0.0, 0.003),
+                             random.normal(0.0, 0.001));
+  }
+  return sight;
+}
+
+using Fault = std::function<void(std::vector<WheelReading>&, WheelModel&)>;
+
+WheelComparison compared(const Fault& fault) {
+  WheelModel model;
+  auto readings = readings_of(model);
+  fault(readings, model);
+  return compare_wheels(sight_of(), WheelOdometry(model, std::move(readings)), 1.0);
+}
+
+void hold(
+    std::vector<WheelReading>& readings, double from_s, double seconds, bool left, bool right) {
+  const auto first = static_cast<std::size_t>(from_s * 50.0);
+  const auto last = static_cast<std::size_t>((from_s + seconds) * 50.0);
+  const double lost_left = readings[last].left_angle_rad - readings[first].left_angle_rad;
+  const double lost_right = readings[last].right_angle_rad - readings[first].right_angle_rad;
+  for (std::size_t i = first; i < readings.size(); ++i) {
+    if (left) {
+      double& angle = readings[i].left_angle_rad;
+      angle = i < last ? readings[first].left_angle_rad : angle - lost_left;
+    }
+    if (right) {
+      double& angle = readings[i].right_angle_rad;
+      angle = i < last ? readings[first].right_angle_rad : angle - lost_right;
+    }
+  }
+}
+
+TEST(CompareWheels, SoundWheelsAreNotDoubted) {
+  const auto sound = compared([](auto&, auto&) {});
+  EXPECT_TRUE(sound.doubts.empty());
+  EXPECT_NEAR(sound.turn_factor.value(), 1.0, 0.03);
+  EXPECT_FALSE(sound.way_factor);  // no corners: no ground
+}
+
+// Radius, track and time of honest wheels are a few percent and some hundredths of a second off.
+TEST(CompareWheels, UsualErrorsAreNotDoubted) {
+  EXPECT_TRUE(compared([](auto&, WheelModel& m) { m.track_width_m *= 1.05; }).doubts.empty());
+  EXPECT_TRUE(compared([](auto&, WheelModel& m) {
+                m.radius_left_m *= 1.02;
+                m.radius_right_m *= 1.02;
+              }).doubts.empty());
+  EXPECT_TRUE(compared([](auto&, WheelModel& m) { m.radius_left_m *= 1.005; }).doubts.empty());
+}
+
+// One wheel or both stand for half a second and more: the time is found within 0.4 s at both ends,
+// and the way that is missing within 0.2 m.
+TEST(CompareWheels, AWheelThatStandsIsFoundWhenItStands) {
+  for (const double seconds : {0.5, 2.0, 5.0})
+    for (const int wheels : {1, 2, 3}) {
+      const bool left = (wheels & 1) != 0;
+      const bool right = (wheels & 2) != 0;
+      const auto c =
+          compared([&](auto& readings, auto&) { hold(readings, 12.0, seconds, left, right); });
+      SCOPED_TRACE(std::to_string(seconds) + " s, wheels " + std::to_string(wheels));
+      ASSERT_EQ(c.doubts.size(), 1U);
+      EXPECT_NEAR(static_cast<double>(c.doubts[0].span.first) * 1e-9, 12.0, 0.4);
+      EXPECT_NEAR(static_cast<double>(c.doubts[0].span.second) * 1e-9, 12.0 + seconds, 0.4);
+      const double missing = kSpeed * seconds * (left && right ? 1.0 : 0.5);
+      EXPECT_NEAR(c.doubts[0].way_m, -missing, 0.2);
+      if (left != right) EXPECT_EQ(c.doubts[0].turn_rad > 0.0, left);
+      EXPECT_FALSE(c.doubts_all());
+    }
+}
+
+TEST(CompareWheels, ALostCountIsFound) {
+  for (const double jump_rad : {3.0, -30.0}) {
+    const auto c = compared([&](auto& readings, auto&) {
+      for (std::size_t i = 1000; i < readings.size(); ++i) readings[i].left_angle_rad += jump_rad;
+    });
+    ASSERT_EQ(c.doubts.size(), 1U);
+    EXPECT_LE(c.doubts[0].span.first, 20'000'000'000);
+    EXPECT_GE(c.doubts[0].span.second, 20'000'000'000);
+    EXPECT_LT(c.doubts[0].span.second - c.doubts[0].span.first, 1'000'000'000);
+  }
+}
+
+TEST(CompareWheels, WhatIsWrongThroughoutLeavesTheWheelsOut) {
+  const auto swapped = compared([](auto& readings, auto&) {
+    for (auto& r : readings) std::swap(r.left_angle_rad, r.right_angle_rad);
+  });
+  EXPECT_TRUE(swapped.doubts_all());
+  EXPECT_NEAR(swapped.turn_factor.value(), -1.0, 0.03);
+  const auto half_track = compared([](auto&, WheelModel& m) { m.track_width_m *= 0.5; });
+  EXPECT_TRUE(half_track.doubts_all());
+  EXPECT_NEAR(half_track.turn_factor.value(), 2.0, 0.06);
+  const auto reversed = compared([](auto& readings, auto&) {
+    for (auto& r : readings) r.right_angle_rad = -r.right_angle_rad;
+  });
+  EXPECT_TRUE(reversed.doubts_all());
+  const auto half = compared([](auto& readings, auto&) { hold(readings, 20.0, 19.9, true, true); });
+  EXPECT_TRUE(half.doubts_all());
+}
+
+}  // namespace
+}  // namespace roadbook
