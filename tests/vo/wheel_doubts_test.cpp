@@ -12,22 +12,22 @@
 namespace roadbook {
 namespace {
 
-constexpr double kSpeed = 2.0;   // [m/s]
-constexpr double kRadius = 8.0;  // [m]: bends left and right in turn
-constexpr double kSeconds = 40.0;
+constexpr double kSpeed_m_s = 2.0;  // [m/s]
+constexpr double kBend_m = 8.0;     // [m]: bends left and right in turn
+constexpr double kDriven_s = 40.0;
 constexpr double kSightScale = 1.1;  // cameras alone know lengths up to a factor
 
-double curvature(double s) { return std::fmod(s, 20.0) < 10.0 ? 1.0 / kRadius : -1.0 / kRadius; }
+double curvature(double s) { return std::fmod(s, 20.0) < 10.0 ? 1.0 / kBend_m : -1.0 / kBend_m; }
 
 // Angles of the wheels every 20 ms, by hand: each rolls on its own circle.
 std::vector<WheelReading> readings_of(const WheelModel& model) {
   std::vector<WheelReading> readings;
   double left = 0.0;
   double right = 0.0;
-  for (int i = 0; i <= 50 * static_cast<int>(kSeconds); ++i) {
+  for (int i = 0; i <= 50 * static_cast<int>(kDriven_s); ++i) {
     readings.push_back({std::int64_t{i} * 20'000'000, left, right, std::nullopt});
-    const double step = kSpeed * 0.02;
-    const double across = 0.5 * model.track_width_m * curvature(kSpeed * 0.02 * i);
+    const double step = kSpeed_m_s * 0.02;
+    const double across = 0.5 * model.track_width_m * curvature(kSpeed_m_s * 0.02 * i);
     left += step * (1.0 - across) / model.radius_left_m;
     right += step * (1.0 + across) / model.radius_right_m;
   }
@@ -39,15 +39,16 @@ VoResult sight_of() {
   Random random(11, "sight");
   VoResult sight;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  for (int i = 0; i < 10 * static_cast<int>(kSeconds); ++i) {
+  for (int i = 0; i < 10 * static_cast<int>(kDriven_s); ++i) {
     VoKeyframe keyframe;
     keyframe.t_ns = std::int64_t{i} * 100'000'000;
     keyframe.T_odom_vehicle = T;
     keyframe.inliers = 200;
     sight.keyframes.push_back(keyframe);
     for (int part = 0; part < 5; ++part) {
-      const double s = kSpeed * (0.1 * i + 0.02 * part);
-      T = T * pose_from_planar(kSightScale * kSpeed * 0.02, 0.0, kSpeed * 0.02 * curvature(s));
+      const double s = kSpeed_m_s * (0.1 * i + 0.02 * part);
+      T = T *
+          pose_from_planar(kSightScale * kSpeed_m_s * 0.02, 0.0, kSpeed_m_s * 0.02 * curvature(s));
     }
     T = T * pose_from_planar(random.normal(0.0, 0.003), random.normal(0.0, 0.003),
                              random.normal(0.0, 0.001));
@@ -112,9 +113,11 @@ TEST(CompareWheels, AWheelThatStandsIsFoundWhenItStands) {
       ASSERT_EQ(c.doubts.size(), 1U);
       EXPECT_NEAR(static_cast<double>(c.doubts[0].span.first) * 1e-9, 12.0, 0.4);
       EXPECT_NEAR(static_cast<double>(c.doubts[0].span.second) * 1e-9, 12.0 + seconds, 0.4);
-      const double missing = kSpeed * seconds * (left && right ? 1.0 : 0.5);
+      const double missing = kSpeed_m_s * seconds * (left && right ? 1.0 : 0.5);
       EXPECT_NEAR(c.doubts[0].way_m, -missing, 0.2);
-      if (left != right) EXPECT_EQ(c.doubts[0].turn_rad > 0.0, left);
+      if (left != right) {
+        EXPECT_EQ(c.doubts[0].turn_rad > 0.0, left);
+      }
       EXPECT_FALSE(c.doubts_all());
     }
 }
