@@ -247,8 +247,12 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   MappingInput input = join_drives(std::move(odometry), rigs, has_wheels);
   std::vector<std::optional<double>> ground_sigma(drives.size());
   clock.run("scale", [&] {
-    for (std::size_t i = 0; i < drives.size(); ++i)
-      if (!has_wheels[i]) ground_sigma[i] = scale_by_ground(input, static_cast<int>(i), options);
+    for (std::size_t i = 0; i < drives.size(); ++i) {
+      const int session = static_cast<int>(i);
+      if (!has_motion_without_wheels(input, session)) continue;
+      const auto sigma = scale_by_ground(input, session, options);
+      if (!has_wheels[i]) ground_sigma[i] = sigma;
+    }
     return 0;
   });
   auto loops = clock.run("loops", [&] { return loops_of(input, options, build, progress); });

@@ -101,6 +101,13 @@ MappingInput join_drives(std::vector<VoResult> odometry,
   return input;
 }
 
+bool has_motion_without_wheels(const MappingInput& input, int session) {
+  const auto& keyframes = input.odometry.keyframes;
+  for (std::size_t k = 1; k < keyframes.size(); ++k)
+    if (input.session[k] == session && !keyframes[k].after_gap && !keyframes[k].wheels) return true;
+  return false;
+}
+
 std::optional<double> scale_by_ground(MappingInput& input, int session, const MapOptions& options) {
   std::optional<double> sigma;
   // Triangulation and the choice of ground points depend on the scale, so a second round is needed.
@@ -108,13 +115,16 @@ std::optional<double> scale_by_ground(MappingInput& input, int session, const Ma
     const auto poses = odometry_poses(input.odometry);
     auto tracks = join_tracks(input.odometry, {});
     triangulate_tracks(input, poses, options.triangulation, tracks);
-    const auto profile = ground_scale_profile(input, poses, tracks);
+    auto profile = ground_scale_profile(input, poses, tracks);
     if (!profile.found) break;
     sigma = profile.sigma;
     std::size_t begin = 0;
     while (begin < poses.size() && input.session[begin] != session) ++begin;
     std::size_t end = begin;
     while (end < poses.size() && input.session[end] == session) ++end;
+    // Where the wheels know the motion, they know its length better.
+    for (std::size_t k = begin + 1; k < end; ++k)
+      if (input.odometry.keyframes[k].wheels) profile.factor[k - 1] = 1.0;
     rechain(input.odometry, begin, end, profile.factor);
   }
   const auto poses = odometry_poses(input.odometry);

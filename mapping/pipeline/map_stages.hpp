@@ -19,9 +19,12 @@ namespace roadbook {
                                        const std::vector<Rig>& rigs,
                                        const std::vector<bool>& has_wheels);
 
-/// Scales the odometry of a session without wheels to metres by the cameras' height above ground.
-/// Changes poses, track positions and travelled distances. Returns the relative standard deviation
-/// of the scale; empty if the ground was not seen.
+/// Says whether a motion of the session is known by the cameras alone.
+[[nodiscard]] bool has_motion_without_wheels(const MappingInput& input, int session);
+
+/// Scales the motions of a session that wheels do not know to metres, by the cameras' height above
+/// ground. Changes poses, track positions and travelled distances. Returns the relative standard
+/// deviation of the scale; empty if the ground was not seen.
 std::optional<double> scale_by_ground(MappingInput& input, int session, const MapOptions& options);
 
 /// Result of the pose graph.
