@@ -101,7 +101,7 @@ TEST(CompareWheels, UsualErrorsAreNotDoubted) {
 }
 
 // One wheel or both stand for half a second and more: the time is found within 0.4 s at both ends,
-// and the way that is missing within 0.2 m.
+// and the way that is missing.
 TEST(CompareWheels, AWheelThatStandsIsFoundWhenItStands) {
   for (const double seconds : {0.5, 2.0, 5.0})
     for (const int wheels : {1, 2, 3}) {
@@ -114,7 +114,8 @@ TEST(CompareWheels, AWheelThatStandsIsFoundWhenItStands) {
       EXPECT_NEAR(static_cast<double>(c.doubts[0].span.first) * 1e-9, 12.0, 0.4);
       EXPECT_NEAR(static_cast<double>(c.doubts[0].span.second) * 1e-9, 12.0 + seconds, 0.4);
       const double missing = kSpeed_m_s * seconds * (left && right ? 1.0 : 0.5);
-      EXPECT_NEAR(c.doubts[0].way_m, -missing, 0.2);
+      // In a bend one wheel drives a tenth more or less than the middle of the axle.
+      EXPECT_NEAR(c.doubts[0].way_m, -missing, 0.1 * missing + 0.1);
       if (left != right) {
         EXPECT_EQ(c.doubts[0].turn_rad > 0.0, left);
       }
