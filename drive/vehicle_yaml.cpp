@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/yaml.hpp"
+#include "drive/checks/camera_places.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "sensors/calibration/calibration_fields.hpp"
 
@@ -39,11 +40,14 @@ void check_together(YamlMap& yaml, const VehicleMeasures& v) {
                 "at least track_width = " + decimal(*v.track_width_m));
 }
 
+// Metres, to the millimetre.
+std::string millimetres(double value_m) { return decimal(std::round(1e3 * value_m) / 1e3); }
+
 std::string places_of(const VehicleMeasures& vehicle) {
   const auto body = vehicle.body();
-  return "at most 0.5 m outside the body (x " + decimal(body->min().x()) + " to " +
-         decimal(body->max().x()) + ", y " + decimal(body->min().y()) + " to " +
-         decimal(body->max().y()) + ")";
+  return "at most 0.5 m outside the body (x " + millimetres(body->min().x()) + " to " +
+         millimetres(body->max().x()) + ", y " + millimetres(body->min().y()) + " to " +
+         millimetres(body->max().y()) + ")";
 }
 
 void warn_of_axle(const std::filesystem::path& file,
@@ -112,10 +116,12 @@ void warn_of_vehicle(const std::filesystem::path& file,
   constexpr double kBesideM = 0.5;  // mirrors and brackets reach less far
   for (const MountedCamera& mounted : rig.cameras) {
     const Eigen::Vector2d at = mounted.T_vehicle_camera.translation().head<2>();
+    const std::string fault = mounting_fault(mounted.T_vehicle_camera, *body);
+    if (!fault.empty() && !is_outside_fault(fault)) continue;  // told by warn_of_camera_places
     const Eigen::AlignedBox2d outline(body->min().head<2>(), body->max().head<2>());
     if (outline.exteriorDistance(at) > kBesideM)
       problems.warning((sensors / mounted.name / "sensor.yaml").string(), 0, "T_BS",
-                       mounted.name + " at x " + decimal(at.x()) + ", y " + decimal(at.y()),
+                       mounted.name + " at x " + millimetres(at.x()) + ", y " + millimetres(at.y()),
                        places_of(vehicle));
   }
 }
@@ -139,7 +145,10 @@ std::vector<Problem> doubts_of_given_vehicle(const std::filesystem::path& file,
     if (const auto found = read_wheel_yaml(sensors / "wheels0" / "sensor.yaml", faults))
       wheels = found->wheels;
   ProblemList doubts;
-  if (!faults.has_errors()) warn_of_vehicle(file, sensors, vehicle, rig, wheels, doubts);
+  if (!faults.has_errors()) {
+    warn_of_vehicle(file, sensors, vehicle, rig, wheels, doubts);
+    warn_of_camera_places(sensors, rig, wheels, vehicle, doubts);
+  }
   return doubts.problems();
 }
 

@@ -143,7 +143,9 @@ std::int64_t corrected_stamp(const EffectSizes& sizes, std::int64_t origin_ns, s
 
 std::vector<std::string> not_corrected(const EffectSizes& sizes) {
   std::vector<std::string> names;
-  for (const auto& [name, size] : sizes) {
+  for (const auto& entry : sizes) {
+    const std::string& name = entry.first;
+    const double size = entry.second;
     const auto dot = name.find('.');
     const bool rig = name.starts_with("cam") &&
                      std::any_of(kRigEffects.begin(), kRigEffects.end(),

@@ -89,6 +89,10 @@ std::string mounting_fault(const Eigen::Isometry3d& T_vehicle_camera,
   return "";
 }
 
+bool is_outside_fault(const std::string& fault) {
+  return fault.find("outside the vehicle's body") != std::string::npos;
+}
+
 void warn_of_camera_places(const std::filesystem::path& sensors,
                            const Rig& rig,
                            const std::optional<WheelModel>& wheels,
@@ -113,6 +117,7 @@ void warn_of_camera_places(const std::filesystem::path& sensors,
   for (std::size_t i = 0; i < faults.size(); ++i) {
     const Eigen::Vector3d at = rig.cameras[i].T_vehicle_camera.translation();
     if (faults[i].empty() || at.norm() > kToldElsewhere_m || !(known_frame || inverse)) continue;
+    if (!inverse && vehicle && vehicle->body() && is_outside_fault(faults[i])) continue;
     problems.warning(
         (sensors / rig.cameras[i].name / "sensor.yaml").string(), 0, "T_BS",
         rig.cameras[i].name + " " + place_text(at) + ", " + faults[i] + inverse_hint(inverse),

@@ -19,6 +19,10 @@ namespace roadbook {
 [[nodiscard]] std::string mounting_fault(const Eigen::Isometry3d& T_vehicle_camera,
                                          const Eigen::AlignedBox3d& body);
 
+/// Whether a fault is a place outside the body, which warn_of_vehicle tells where the body is
+/// known.
+[[nodiscard]] bool is_outside_fault(const std::string& fault);
+
 /// Warns of cameras that no vehicle carries so. Where most poses are unlikely and the inverses of
 /// all of them are likely, the messages say so: Kalibr's T_cam_imu is the inverse of T_BS. Without
 /// wheels and vehicle.yaml the frame of the poses may be any body's: then it warns of inverses

@@ -78,7 +78,7 @@ inline Rig small_rig() {
       camera.camera.parameters = {10.1, 10.2, 7.5, 5.5, 0.01, -0.002, 0.0003, 0.1};
     else
       camera.camera.parameters = {1.1, 10.1, 10.2, 7.5, 5.5, 0.01, -0.002, 0.0003, 0.1};
-    const Eigen::Matrix3d forward = (Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();
+    const Eigen::Quaterniond forward((Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
     camera.T_vehicle_camera = Eigen::Translation3d(1.0, 0.1 * i, 1.5) * forward *
                               Eigen::AngleAxisd(0.3 + i, Eigen::Vector3d(1, 2, 3).normalized());
     camera.time_offset_s = 0.001 * i;

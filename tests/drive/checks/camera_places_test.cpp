@@ -9,7 +9,7 @@ namespace {
 
 // A camera at `at` that looks along `azimuth` (0: ahead) and down by `down` [rad].
 MountedCamera camera_at(const std::string& name, Eigen::Vector3d at, double azimuth, double down) {
-  const Eigen::Matrix3d forward = (Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();
+  const Eigen::Quaterniond forward((Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
   MountedCamera camera = small_rig().cameras[0];
   camera.name = name;
   camera.T_vehicle_camera = Eigen::Translation3d(at) *
@@ -82,7 +82,10 @@ TEST(CameraPlaces, ASingleUnlikelyCameraIsNamedWithTheReason) {
     EXPECT_EQ(text.find("inverse"), std::string::npos) << text;
   };
   expect(with(1, camera_at("", {1.7, 0.98, -1}, 1.57, 0.7)), "1 m below the ground");
-  expect(with(2, camera_at("", {-8, 0, 0.9}, 3.14, 0.3)), "7.1 m outside the vehicle's body");
+  EXPECT_EQ(with(2, camera_at("", {-8, 0, 0.9}, 3.14, 0.3)), "");  // warn_of_vehicle names it
+  Rig far = parking_rig();
+  far.cameras[2] = camera_at("cam2", {-8, 0, 0.9}, 3.14, 0.3);
+  expect(found(far, true, false), "6.44 m outside the vehicle's body");
   expect(with(0, camera_at("", {3.5, 0, 0.7}, 3.14, 0.3)), "a view through the vehicle's own body");
   expect(with(3, camera_at("", {1.7, -0.98, 1}, 1.57, 0.7)),
          "a view through the vehicle's own body");
