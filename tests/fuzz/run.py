@@ -13,7 +13,8 @@ import pathlib
 import subprocess
 import sys
 
-import seeds
+sys.dont_write_bytecode = True
+import seeds  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
