@@ -107,13 +107,17 @@ void warn_of_camera_places(const std::filesystem::path& sensors,
   std::vector<std::string> faults;
   std::size_t likely_inverses = 0;
   std::size_t unlikely = 0;
+  std::size_t far_below = 0;
   for (const MountedCamera& camera : rig.cameras) {
     faults.push_back(mounting_fault(camera.T_vehicle_camera, *body));
-    const bool far_below = camera.T_vehicle_camera.translation().z() < -0.3;
-    unlikely += !faults.back().empty() && (known_frame || far_below) ? 1 : 0;
+    unlikely += faults.back().empty() ? 0 : 1;
+    far_below += camera.T_vehicle_camera.translation().z() < -0.3 ? 1 : 0;
     likely_inverses += mounting_fault(camera.T_vehicle_camera.inverse(), *body).empty() ? 1 : 0;
   }
-  const bool inverse = 2 * unlikely > rig.cameras.size() && likely_inverses == rig.cameras.size();
+  const std::size_t count = rig.cameras.size();
+  const bool most =
+      known_frame ? 2 * unlikely > count : unlikely == count && 2 * far_below >= count;
+  const bool inverse = most && likely_inverses == count;
   for (std::size_t i = 0; i < faults.size(); ++i) {
     const Eigen::Vector3d at = rig.cameras[i].T_vehicle_camera.translation();
     if (faults[i].empty() || at.norm() > kToldElsewhere_m || !(known_frame || inverse)) continue;

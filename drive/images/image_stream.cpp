@@ -233,6 +233,7 @@ ImageStream load_image_stream(const std::filesystem::path& sensor_folder,
   ImageStream stream;
   stream.folder = sensor_folder / "data";
   const std::filesystem::path table = sensor_folder / "data.csv";
+  const std::size_t errors_at_start = problems.error_count();
   const auto rows = read_rows(table, limits, stream, problems);
   std::vector<ImageHeader> headers(rows.size());
   parallel_for(rows.size(), options.num_threads, [&](std::size_t i) {
@@ -257,7 +258,9 @@ ImageStream load_image_stream(const std::filesystem::path& sensor_folder,
   stream.digest = digest.hex();
   stream.repeats = find_repeats(stream, rows, headers);
   other_sizes.report(table.string(), problems);
-  if (!rows.empty()) warn_of_unnamed_images(stream, headers, problems);
+  // Rows that were refused named images too.
+  if (!rows.empty() && errors_before == errors_at_start)
+    warn_of_unnamed_images(stream, headers, problems);
   if (problems.error_count() == errors_before) warn_of_share(stream, rows.size(), problems);
   if (!rows.empty() && stream.stamps_ns.empty() && problems.error_count() == errors_before)
     problems.error(table.string(), 0, "images",
