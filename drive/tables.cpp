@@ -31,7 +31,7 @@ bool read_numbers(CsvReader& csv,
   return good;
 }
 
-std::string shown(double value) {
+std::string decimals_of(double value) {
   std::ostringstream text;
   text << value;
   return text.str();
@@ -167,7 +167,7 @@ StreamSummary read_truth_table(const std::filesystem::path& file,
     }
     const double farthest = std::max({std::abs(v[1]), std::abs(v[2]), std::abs(v[3])});
     if (!(farthest <= kFarthest_m)) {
-      problems.error(csv.file(), csv.line(), "position", shown(farthest) + " m",
+      problems.error(csv.file(), csv.line(), "position", decimals_of(farthest) + " m",
                      "metres, at most 1e8 (earth-centred ones are below 1e7)");
       continue;
     }

@@ -1,5 +1,4 @@
 #include "diagnosis/logs/plain_matrix.hpp"
-#include "base/text_file.hpp"
 
 #include <libdeflate.h>
 
@@ -10,6 +9,8 @@
 #include <optional>
 #include <span>
 #include <vector>
+
+#include "base/text_file.hpp"
 
 namespace roadbook {
 namespace {

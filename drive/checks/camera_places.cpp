@@ -35,7 +35,8 @@ Box body_of_wheels(const WheelModel& wheels) {
                           std::numeric_limits<double>::infinity())};
 }
 
-// Share of the body that a view along `axis` from beside or within passes through, seen from above.
+// Share of the body that a view along `axis` from the skin or from within passes through, seen from
+// above.
 double share_passed(const Eigen::Vector3d& from, const Eigen::Vector3d& axis, const Box& body) {
   const Eigen::Vector2d along = axis.head<2>().normalized();
   double enter = 0.0;

@@ -19,7 +19,7 @@ namespace roadbook {
 [[nodiscard]] std::string mounting_fault(const Eigen::Isometry3d& T_vehicle_camera,
                                          const Eigen::AlignedBox3d& body);
 
-/// Whether a fault is a place outside the body, which warn_of_vehicle tells where the body is
+/// Whether a fault is a place outside the body, which warn_of_vehicle reports where the body is
 /// known.
 [[nodiscard]] bool is_outside_fault(const std::string& fault);
 

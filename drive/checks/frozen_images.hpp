@@ -13,7 +13,7 @@ namespace roadbook {
 using WayOfWheels = std::function<double(std::int64_t first_ns, std::int64_t last_ns)>;
 
 /// Warns of cameras that repeat the bytes of one image while the wheels roll or, where no wheels
-/// are known, while another camera's images go on changing. A single camera without wheels is
+/// are known, while another camera's images still change. A single camera without wheels is
 /// warned of as well: the images of a real camera differ by its noise even at rest.
 void warn_of_frozen_images(const std::vector<ImageStream>& images,
                            const WayOfWheels& way,

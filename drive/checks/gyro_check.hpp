@@ -15,7 +15,7 @@ class WheelTrace {
  public:
   /// Adds the next row; `t_ns` on the shared clock.
   void add(std::int64_t t_ns, const WheelReading& reading, const WheelModel& model);
-  /// Way between two stamps, forwards and backwards alike [m]; -1 where the trace does not cover
+  /// Way between two stamps, forwards plus backwards [m]; -1 where the trace does not cover
   /// them.
   [[nodiscard]] double way_m(std::int64_t first_ns, std::int64_t last_ns) const;
 
