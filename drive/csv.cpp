@@ -10,6 +10,7 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kMaxLine = 64u << 10;
+constexpr std::int64_t kLastStamp_ns = 9'000'000'000'000'000'000;  // room for offsets of clocks
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 CsvColumn parse_column(std::string_view text) {
@@ -169,9 +170,10 @@ std::optional<double> CsvReader::number(std::size_t column) {
 
 std::optional<std::int64_t> CsvReader::stamp(std::size_t column) {
   const auto value = parse_int(fields_[column]);
-  if (value && *value >= 0) return value;
-  problems_.error(name_, line(), by_position_ ? "timestamp" : column_name(column),
-                  printable(fields_[column]), "whole nanoseconds >= 0");
+  if (value && *value >= 0 && *value <= kLastStamp_ns) return value;
+  problems_.error(
+      name_, line(), by_position_ ? "timestamp" : column_name(column), printable(fields_[column]),
+      value && *value > 0 ? "nanoseconds before the year 2255" : "whole nanoseconds >= 0");
   return std::nullopt;
 }
 

@@ -141,7 +141,8 @@ void read_beacons(YamlMap& yaml,
   std::size_t unknown = 0;
   for (std::size_t i = 0; i < id.size(); ++i) {
     const auto pose = pose_at(log.streams.poses, t[i]);
-    const auto beacon = places.find(std::lround(id[i]));
+    const bool whole = std::abs(id[i]) <= 1e9;
+    const auto beacon = whole ? places.find(std::lround(id[i])) : places.end();
     unknown += beacon == places.end();
     if (!pose || beacon == places.end()) continue;
     const Eigen::Vector2d antenna = mount.at(*pose);
@@ -189,7 +190,8 @@ void read_friction(YamlMap& yaml,
   std::vector<RawFriction> raw;
   for (std::size_t i = 0; i < n; ++i) {
     raw.push_back({table.stamps()[i], value[i], sigma, std::nullopt, std::nullopt});
-    if (labelled) raw.back().surface = static_cast<int>(std::lround(surface[i]));
+    if (labelled && std::abs(surface[i]) <= 1e9)
+      raw.back().surface = static_cast<int>(std::lround(surface[i]));
     if (warm) raw.back().temperature_c = temperature[i];
   }
   log.readings.friction = friction_readings(log.streams.poses, raw);

@@ -75,7 +75,7 @@ std::vector<fs::path> images_by_frame(const KittiCamera& camera,
   const auto first = frame_number(camera.files.front());
   const auto last = frame_number(camera.files.back());
   if (camera.files.size() == stamps && stamps == frames) {
-    if (first && last && *last - *first + 1 != static_cast<std::int64_t>(stamps))
+    if (first && last && *last - *first != static_cast<std::int64_t>(stamps) - 1)
       result.warnings.push_back({Severity::kWarning, camera.folder.string(), 0, "images",
                                  "numbers " + std::to_string(*first) + " to " +
                                      std::to_string(*last) + " of " + images +

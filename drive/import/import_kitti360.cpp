@@ -57,6 +57,9 @@ Camera read_perspective(const fs::path& file, const std::string& number) {
     const bool projection = key.front() == 'P';
     if (v.size() != (projection ? 12u : 2u))
       refuse(file, table.lines[i], key, "another count", projection ? "12 numbers" : "2 numbers");
+    if (!projection && !(v[0] >= 1.0 && v[0] <= 1e5 && v[1] >= 1.0 && v[1] <= 1e5))
+      refuse(file, table.lines[i], key, table.rows[i][1] + " " + table.rows[i][2],
+             "width and height, 1 to 100000");
     if (projection)
       camera.parameters = {v[0], v[5], v[2], v[6]};
     else

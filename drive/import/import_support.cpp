@@ -32,7 +32,7 @@ std::optional<std::int64_t> seconds_to_ns(std::string_view text) {
   std::int64_t exponent = 0;
   if (const auto e = text.find_first_of("eE"); e != std::string_view::npos) {
     const auto value = parse_int(text.substr(e + 1));
-    if (!value || std::abs(*value) > 30) return std::nullopt;
+    if (!value || *value < -30 || *value > 30) return std::nullopt;
     exponent = *value;
     text = text.substr(0, e);
   }
@@ -59,7 +59,7 @@ std::optional<std::int64_t> seconds_to_ns(std::string_view text) {
   digits.erase(0, std::min(digits.find_first_not_of('0'), digits.size() - 1));
   if (static_cast<std::int64_t>(digits.size()) > kMaxDigits + 1) return std::nullopt;
   const auto ns = parse_int(digits);
-  if (!ns) return std::nullopt;
+  if (!ns || *ns > 9'000'000'000'000'000'000) return std::nullopt;
   return *ns + (round_up ? 1 : 0);
 }
 
@@ -74,7 +74,9 @@ std::optional<std::int64_t> date_to_ns(std::string_view text) {
   const auto hour = parse_int(text.substr(11, 2));
   const auto minute = parse_int(text.substr(14, 2));
   const auto second_ns = seconds_to_ns(text.substr(17));
-  if (!year || !month || !day || !hour || !minute || !second_ns) return std::nullopt;
+  constexpr std::int64_t kMinute_ns = 61'000'000'000;  // with a leap second
+  if (!year || !month || !day || !hour || !minute || !second_ns || *second_ns >= kMinute_ns)
+    return std::nullopt;
   const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
                                          std::chrono::month(static_cast<unsigned>(*month)),
                                          std::chrono::day(static_cast<unsigned>(*day))};
