@@ -230,5 +230,26 @@ TEST(Fuzz, AMutatedJpegHeaderIsReadWithoutHarm) {
   }
 }
 
+TEST(Fuzz, StampsThatIntegersDoNotHoldAreRefused) {
+  EXPECT_EQ(seconds_to_ns("9000000000.000000000"), 9'000'000'000'000'000'000);
+  for (const char* text :
+       {"1e-9223372036854775808", "1e31", "9223372036.8547758079", "9000000000.1"})
+    EXPECT_FALSE(seconds_to_ns(text)) << text;
+  EXPECT_TRUE(date_to_ns("2016-12-31 23:59:60.5"));
+  for (const char* text :
+       {"2240-01-01 00:00:9000000000", "2013-05-28 08:46:61", "9999-05-28 08:46:01"})
+    EXPECT_FALSE(date_to_ns(text)) << text;
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "data.csv";
+  write_text(file,
+             "#timestamp [ns],rear_left_angle [rad],rear_right_angle [rad]\n"
+             "9223372036854775807,1,1\n");
+  ProblemList problems;
+  (void)read_wheel_table(file, WheelModel{}, {}, problems, [](const WheelReading&) {});
+  ASSERT_TRUE(problems.has_errors());
+  ROADBOOK_EXPECT_TEXT(to_line(problems.problems().front()),
+                       "want nanoseconds before the year 2255");
+}
+
 }  // namespace
 }  // namespace roadbook::test
