@@ -114,7 +114,9 @@ const std::vector<Case> kCases = {
      "error: D/cam0/data.csv:1: timestamp: got unit [us], want [ns]\n", false},
     {"HeaderWithTooManyColumns",
      [](const fs::path& d) { edit(d / "wheels0/data.csv", "\n", ",torque [N m]\n"); },
-     "error: D/wheels0/data.csv:2: row: got 4 fields, want 5 as the header names\n", false},
+     "error: D/wheels0/data.csv:2: row: got 4 fields, and the like in 99 more lines up to 101, "
+     "want 5 as the header names\n",
+     false},
     {"HeaderWithoutTheColumn",
      [](const fs::path& d) { edit(d / "wheels0/data.csv", "rear_left_angle", "rear_lef_angle"); },
      "error: D/wheels0/data.csv:1: header: got column rear_lef_angle, want rear_left_angle [rad]\n",
