@@ -188,6 +188,8 @@ LabelFile read_yolo(const std::filesystem::path& folder, const MapLayers& layers
   const auto names = read_names(folder);
   const YoloFiles files = yolo_files(folder);
   const std::string name = files.rows.string();
+  if (!std::filesystem::exists(files.rows))
+    throw BadInput({Severity::kError, name, 0, "", "no such file", "rows of labels"});
   std::istringstream in(read_regular_file(files.rows, "rows of labels"));
   const PicturePlace place = yolo_picture_place(folder, layers);
   LabelFile result;
