@@ -48,6 +48,15 @@ struct Window {
 
 double signed_length(double x, double y) { return std::copysign(std::hypot(x, y), x); }
 
+// Of readings that are rounded to ticks (uniform: variance 1 / 12), at both ends of a window.
+Eigen::Matrix3d tick_covariance(const WheelModel& model) {
+  if (!(model.ticks_per_turn > 0.0)) return Eigen::Matrix3d::Zero();
+  const double tick_m = 2.0 * std::numbers::pi / model.ticks_per_turn * model.radius_left_m;
+  const double way = tick_m * tick_m / 12.0;  // mean of two wheels, two ends
+  const double turn = tick_m * tick_m / 3.0 / (model.track_width_m * model.track_width_m);
+  return Eigen::Vector3d(way, 0.0, turn).asDiagonal();
+}
+
 std::vector<Window> windows_of(const VoResult& odometry,
                                const WheelOdometry& wheels,
                                std::size_t length) {
@@ -69,7 +78,7 @@ std::vector<Window> windows_of(const VoResult& odometry,
     w.turn = heading_of(T);
     w.wheel_way = signed_length(moved->motion.x(), moved->motion.y());
     w.wheel_turn = moved->motion.z();
-    w.covariance = moved->covariance;
+    w.covariance = moved->covariance + tick_covariance(wheels.model());
     windows.push_back(w);
   }
   return windows;

@@ -120,6 +120,12 @@ std::vector<std::size_t> by_worth(const std::vector<JoinedTrack>& tracks,
   return order;
 }
 
+// The motion to this keyframe is known by the cameras alone.
+bool lacks_wheels(const MappingInput& input, int keyframe) {
+  const VoKeyframe& k = input.odometry.keyframes[static_cast<std::size_t>(keyframe)];
+  return keyframe > 0 && !k.after_gap && !k.wheels;
+}
+
 void add_motions(const MappingInput& input, const BundleStageOptions& options, BundleStage& stage) {
   stage.scale_of_session.assign(input.half_rigs.size(), -1);
   const auto& keyframes = input.odometry.keyframes;
@@ -160,8 +166,9 @@ BundleStage make_bundle(const MappingInput& input,
   for (std::size_t i = 0; i < tracks.size(); ++i)
     gives_scale[i] =
         on_ground(views[i], level, options.ground) &&
-        !input.has_wheels[static_cast<std::size_t>(
-            input.session[static_cast<std::size_t>(tracks[i].views.front().keyframe)])];
+        (!input.has_wheels[static_cast<std::size_t>(
+             input.session[static_cast<std::size_t>(tracks[i].views.front().keyframe)])] ||
+         lacks_wheels(input, views[i].keyframe));
   Quota quota(input, options.per_image);
   std::vector<std::size_t> chosen;
   for (const std::size_t i : by_worth(tracks, near, gives_scale))
