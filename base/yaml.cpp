@@ -1,6 +1,9 @@
 #include "base/yaml.hpp"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <cstdint>
+#include <sstream>
 
 #include "base/text.hpp"
 #include "base/text_file.hpp"
@@ -76,13 +79,46 @@ class OneDocument {
   bool ended_ = false;
 };
 
+// Remembers where a document begins.
+class DocumentStart : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&,
+                const std::string&,
+                YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&,
+                       const std::string&,
+                       YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&,
+                  const std::string&,
+                  YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+  std::int64_t line = 0;
+};
+
+// Where the parser ends a document early, at a stray bracket or comma, it takes the rest for
+// another one. (YAML::LoadAll would take such a rest for documents without end.)
+void require_no_more(const std::string& text, const std::string& name) {
+  std::istringstream in(text);
+  YAML::Parser parser(in);
+  DocumentStart document;
+  if (parser.HandleNextDocument(document) && parser.HandleNextDocument(document))
+    refuse_text(name, document.line, "text that belongs to no key", "one document");
+}
+
 YAML::Node parse_text(const std::string& text, const std::string& name) {
   require_one_yaml_document(text, name);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      refuse_text(name, line_of(documents[1]), "a second document", "one document");
-    return documents.empty() ? YAML::Node() : documents.front();
+    require_no_more(text, name);
+    return YAML::Load(text);
   } catch (const YAML::Exception& e) {
     throw BadInput(
         {Severity::kError, name, e.mark.line + 1, "", "invalid YAML (" + e.msg + ")", "YAML"});

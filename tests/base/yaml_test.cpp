@@ -110,6 +110,13 @@ TEST(Yaml, TakesOneDocumentWithItsMarksAndNothingBehindIt) {
       "document alone");
 }
 
+// Found by fuzzing: the parser's own list of documents had no end.
+TEST(Yaml, RefusesARestThatTheParserWouldDrop) {
+  for (const char* text : {"a: 1\n]\nb: 2\n", "a: 1\n, b\n", ", \"py\": 0\ni: MEI\n", "[1]\n[2]\n",
+                           "{a: 1}\n{b: 2}\n", "\"x\" y\n", ", a: 1\n"})
+    EXPECT_NE(error_of(text), "") << text;
+}
+
 TEST(Yaml, TakesTextInUtf8Alone) {
   EXPECT_EQ(error_of("a: \"B\xC3\xBC\x63her\"\n"), "");
   EXPECT_EQ(error_of("a: 1\nb: \"B\xFC\x63her\"\n"),

@@ -154,8 +154,8 @@ def longest(name):
 
 
 def dictionary(name):
-    words = ["nan", "inf", "1e308", "-1", "9223372036854775807", "\\x00", "\\xEF\\xBB\\xBF", ": ", "[", "{", "&a", "*a", "---\\n",
-             "...\\n", "====\\n", "#timestamp [ns]", ",", "\\r\\n\\r\\n", "Content-Length: ", "T_BS", "null", "\\\"coordinates\\\":"]
+    words = ["nan", "inf", "1e308", "-1", "9223372036854775807", "\\x00", "\\xEF\\xBB\\xBF", ": ", "[", "{", "&a", "*a", "---\\x0A",
+             "...\\x0A", "====\\x0A", "#timestamp [ns]", ",", "\\x0D\\x0A\\x0D\\x0A", "Content-Length: ", "T_BS", "null", "\\\"coordinates\\\":"]
     if name == "image":
         words = ["IHDR", "IDAT", "IEND", "PLTE", "\\xFF\\xD8\\xFF", "\\xFF\\xC0", "\\xFF\\xDA", "\\xFF\\xD9"]
     if name == "npy":
