@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
+#include <span>
 
 #include "base/format.hpp"
 #include "base/parallel.hpp"
@@ -48,127 +49,182 @@ double significance(const CameraFit& fit) {
   return most;
 }
 
-const CameraFit* likeliest(const CameraEvidence& evidence) {
-  const CameraFit* best = nullptr;
-  for (const CameraFit& fit : evidence.fits)
-    if (!best || fit.gain > best->gain) best = &fit;
-  return best;
+// The fits that explain the misfit best, likeliest first.
+std::vector<const CameraFit*> likeliest(const CameraEvidence& evidence, double as_likely) {
+  std::vector<const CameraFit*> fits;
+  for (const CameraFit& fit : evidence.fits) fits.push_back(&fit);
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const CameraFit* a, const CameraFit* b) { return a->gain > b->gain; });
+  std::erase_if(fits, [best = fits.empty() ? 0.0 : fits.front()->gain,
+                       as_likely](const CameraFit* fit) { return fit->gain < as_likely * best; });
+  return fits;
 }
 
-CameraDoubt doubt_of(const CameraEvidence& evidence, const CameraFit& fit) {
+struct Wording {
+  const char* field;
+  std::string got;
+  const char* want;
+};
+
+Wording wording_of(const CameraFit& fit) {
   const auto& e = fit.errors;
   const auto& s = fit.sigmas;
-  CameraDoubt doubt{evidence.session, evidence.camera, "", "", ""};
   switch (fit.parameter) {
     case CameraParameter::kRotation:
-      doubt.field = "rotation";
-      doubt.got = "images of a camera turned by roll " + fixed(degrees(e[0]), 2) + ", pitch " +
-                  fixed(degrees(e[1]), 2) + ", yaw " + fixed(degrees(e[2]), 2) + " deg (+- " +
-                  fixed(degrees(s.head<3>().maxCoeff()), 2) + ")";
-      doubt.want = "the rotation of T_BS in its sensor.yaml";
-      break;
+      return {"rotation",
+              "turned by roll " + fixed(degrees(e[0]), 2) + ", pitch " + fixed(degrees(e[1]), 2) +
+                  ", yaw " + fixed(degrees(e[2]), 2) + " deg (+- " +
+                  fixed(degrees(s.head<3>().maxCoeff()), 2) + ")",
+              "the rotation of T_BS in its sensor.yaml"};
     case CameraParameter::kFocal:
-      doubt.field = "focal length";
-      doubt.got = "images of a focal length " + fixed(100.0 * std::abs(e[3]), 2) +
-                  (e[3] > 0.0 ? " % longer" : " % shorter") + " (+- " + fixed(100.0 * s[3], 2) +
-                  " %)";
-      doubt.want = "the intrinsics of its sensor.yaml";
-      break;
+      return {"focal length",
+              fixed(100.0 * std::abs(e[3]), 2) + (e[3] > 0.0 ? " % longer" : " % shorter") +
+                  " (+- " + fixed(100.0 * s[3], 2) + " %)",
+              "the intrinsics of its sensor.yaml"};
     case CameraParameter::kCentre:
-      doubt.field = "principal point";
-      doubt.got = "images whose principal point lies " + fixed(kFullPerHalfPixel * e[4], 1) +
-                  " px farther right and " + fixed(kFullPerHalfPixel * e[5], 1) + " px lower (+- " +
-                  fixed(kFullPerHalfPixel * s.segment<2>(4).maxCoeff(), 1) + ")";
-      doubt.want = "the intrinsics of its sensor.yaml";
-      break;
+      return {"principal point",
+              fixed(kFullPerHalfPixel * e[4], 1) + " px farther right, " +
+                  fixed(kFullPerHalfPixel * e[5], 1) + " px lower (+- " +
+                  fixed(kFullPerHalfPixel * s.segment<2>(4).maxCoeff(), 1) + ")",
+              "the intrinsics of its sensor.yaml"};
     case CameraParameter::kPosition:
-      doubt.field = "position";
-      doubt.got = "images of a camera " + fixed(e[6], 2) + " m farther ahead and " +
-                  fixed(e[7], 2) + " m farther left (+- " + fixed(s.segment<2>(6).maxCoeff(), 2) +
-                  ")";
-      doubt.want = "the position of T_BS in its sensor.yaml";
-      break;
+      return {"position",
+              fixed(e[6], 2) + " m farther ahead, " + fixed(e[7], 2) + " m farther left (+- " +
+                  fixed(s.segment<2>(6).maxCoeff(), 2) + ")",
+              "the position of T_BS in its sensor.yaml"};
     case CameraParameter::kDelay:
-      doubt.field = "time_offset";
-      doubt.got = "images that are " + fixed(1e3 * std::abs(e[9]), 0) +
+      return {"time_offset",
+              "images " + fixed(1e3 * std::abs(e[9]), 0) +
                   (e[9] > 0.0 ? " ms older" : " ms younger") + " than their stamps (+- " +
-                  fixed(1e3 * s[9], 0) + ")";
-      doubt.want = "stamps of the exposures, or the time_offset of its sensor.yaml";
-      break;
+                  fixed(1e3 * s[9], 0) + ")",
+              "stamps of the exposures, or the time_offset of its sensor.yaml"};
+  }
+  return {"", "", ""};
+}
+
+CameraDoubt doubt_of(const CameraEvidence& evidence, const std::vector<const CameraFit*>& fits) {
+  const Wording first = wording_of(*fits.front());
+  CameraDoubt doubt{evidence.session, evidence.camera, first.field, first.got, first.want};
+  for (std::size_t i = 1; i < fits.size(); ++i) {
+    const Wording other = wording_of(*fits[i]);
+    doubt.got += std::string("; or ") + other.field + " " + other.got;
   }
   return doubt;
 }
 
-std::string camera_name(const MappingInput& input, int session, int camera) {
-  return input.half_rigs[static_cast<std::size_t>(session)]
-      .cameras[static_cast<std::size_t>(camera)]
-      .name;
-}
-
 // Shares of the tracks of each camera (row) that fit when they are taken for another's (column).
 Eigen::MatrixXd shares_as_others(const Rig& rig,
-                                 const std::vector<std::vector<CameraTrack>>& tracks,
+                                 std::span<const CameraEvidence> evidence,
                                  const VehicleMotion& motion,
                                  const CameraDoubtOptions& options) {
-  const auto n = rig.cameras.size();
+  const std::size_t n = rig.cameras.size();
   Eigen::MatrixXd share(n, n);
   parallel_for(n * n, options.num_threads, [&](std::size_t i) {
     share(static_cast<Eigen::Index>(i / n), static_cast<Eigen::Index>(i % n)) =
-        fitting_share(rig.cameras[i % n], tracks[i / n], motion, options.inlier_px);
+        fitting_share(rig.cameras[i % n], evidence[i / n].tracks, motion, options.inlier_px);
   });
   return share;
 }
 
 // Cameras whose images fit another camera much better than their own: an exchange.
-std::vector<CameraDoubt> exchanged(const MappingInput& input,
-                                   int session,
-                                   const Eigen::MatrixXd& share) {
+std::vector<CameraDoubt> exchanged(const Rig& rig, int session, const Eigen::MatrixXd& share) {
   std::vector<CameraDoubt> doubts;
   for (Eigen::Index c = 0; c < share.rows(); ++c) {
     Eigen::Index other = 0;
     const double most = share.row(c).maxCoeff(&other);
-    if (other == c || most < 0.3 || share(c, c) > 0.6 * most) continue;
+    if (other == c || most < 0.6 || 1.0 - share(c, c) < 3.0 * (1.0 - most) + 0.05) continue;
     Eigen::Index back = 0;
     (void)share.row(other).maxCoeff(&back);
-    const std::string mine = camera_name(input, session, static_cast<int>(c));
-    const std::string its = camera_name(input, session, static_cast<int>(other));
     if (back == c && other < c) continue;  // said with the other camera
-    doubts.push_back({session, static_cast<int>(c), "images",
-                      back == c ? mine + " and " + its +
-                                      " look exchanged: each fits the other's "
-                                      "calibration"
-                                : "images that fit the calibration of " + its,
-                      "the images of " + mine});
+    const std::string& mine = rig.cameras[static_cast<std::size_t>(c)].name;
+    const std::string& its = rig.cameras[static_cast<std::size_t>(other)].name;
+    doubts.push_back(
+        {session, static_cast<int>(c), "images",
+         back == c ? mine + " and " + its + " look exchanged: each fits the other's calibration"
+                   : "images that fit the calibration of " + its,
+         "the images of " + mine});
   }
+  return doubts;
+}
+
+std::vector<CameraDoubt> wrong_parameters(const Rig& rig,
+                                          std::span<const CameraEvidence> evidence,
+                                          const CameraDoubtOptions& options) {
+  struct Found {
+    double size = 0.0;
+    const CameraEvidence* evidence = nullptr;
+    std::vector<const CameraFit*> fits;
+  };
+  std::vector<Found> found;
+  double largest = 0.0;
+  for (const CameraEvidence& one : evidence) {
+    if (one.repeated_share > kRepeated) continue;
+    auto fits = likeliest(one, options.as_likely);
+    if (fits.empty()) continue;
+    const CameraFit& fit = *fits.front();
+    const double size =
+        relative_size(fit, rig.cameras[static_cast<std::size_t>(one.camera)], options);
+    if (size < 1.0 || significance(fit) < options.min_sigmas || fit.gain < options.min_gain)
+      continue;
+    largest = std::max(largest, size);
+    found.push_back({size, &one, std::move(fits)});
+  }
+  std::vector<CameraDoubt> doubts;
+  for (const Found& one : found)
+    if (one.size >= options.of_largest * largest)
+      doubts.push_back(doubt_of(*one.evidence, one.fits));
+  return doubts;
+}
+
+std::vector<CameraDoubt> doubts_of_rig(const Rig& rig,
+                                       std::span<const CameraEvidence> evidence,
+                                       const VehicleMotion& motion,
+                                       const CameraDoubtOptions& options) {
+  std::vector<CameraDoubt> doubts;
+  if (rig.cameras.size() < 2) return doubts;
+  for (const CameraEvidence& one : evidence)
+    if (one.repeated_share > kRepeated)
+      doubts.push_back({one.session, one.camera, "images",
+                        fixed(100.0 * one.repeated_share, 0) +
+                            " % of them repeat the image before, though the vehicle moves",
+                        "a new image each time"});
+  const auto share = shares_as_others(rig, evidence, motion, options);
+  if (std::getenv("RB_DOUBT")) {
+    for (const auto& e : evidence) {
+      std::fprintf(stderr, "DOUBT %d cam%d tracks %zu fit %.3f rep %.2f", e.session, e.camera,
+                   e.tracks.size(), share(e.camera, e.camera), e.repeated_share);
+      for (const auto& f : e.fits)
+        std::fprintf(stderr, " | %.3f sz %.1f sg %.0f", f.gain,
+                     relative_size(f, rig.cameras[static_cast<std::size_t>(e.camera)], options),
+                     significance(f));
+      std::fprintf(stderr, "\n");
+    }
+  }
+  auto more = exchanged(rig, evidence.front().session, share);
+  if (more.empty()) more = wrong_parameters(rig, evidence, options);
+  doubts.insert(doubts.end(), more.begin(), more.end());
   return doubts;
 }
 
 }  // namespace
 
 std::vector<CameraEvidence> camera_evidence(const MappingInput& input,
-                                            const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                            const CameraDoubtOptions& options) {
-  const VehicleMotion motion = vehicle_motion(input, T_map_vehicle);
+                                            const VehicleMotion& motion,
+                                            int num_threads) {
   std::vector<CameraEvidence> all;
-  for (int s = 0; s < static_cast<int>(input.half_rigs.size()); ++s)
-    for (int c = 0;
-         c < static_cast<int>(input.half_rigs[static_cast<std::size_t>(s)].cameras.size()); ++c) {
-      CameraEvidence one;
-      one.session = s;
-      one.camera = c;
-      all.push_back(std::move(one));
-    }
-  parallel_for(all.size(), options.num_threads, [&](std::size_t i) {
+  for (std::size_t s = 0; s < input.half_rigs.size(); ++s)
+    for (std::size_t c = 0; c < input.half_rigs[s].cameras.size(); ++c)
+      all.push_back({static_cast<int>(s), static_cast<int>(c), {}, 0.0, {}});
+  parallel_for(all.size(), num_threads, [&](std::size_t i) {
     CameraEvidence& one = all[i];
-    const auto& mounted = input.half_rigs[static_cast<std::size_t>(one.session)]
-                              .cameras[static_cast<std::size_t>(one.camera)];
-    const auto tracks = follow_corners(input, one.session, one.camera);
-    one.tracks = tracks.size();
+    const Rig& rig = input.half_rigs[static_cast<std::size_t>(one.session)];
+    if (rig.cameras.size() < 2) return;
+    one.tracks = follow_corners(input, one.session, one.camera);
     one.repeated_share = repeated_share(input, one.session, one.camera);
-    one.fit_share = fitting_share(mounted, tracks, motion, options.inlier_px);
-    if (tracks.size() < kFewestTracks) return;
+    if (one.tracks.size() < kFewestTracks) return;
     for (const CameraParameter parameter : kCameraParameters)
-      one.fits.push_back(fit_camera(mounted, tracks, motion, parameter));
+      one.fits.push_back(fit_camera(rig.cameras[static_cast<std::size_t>(one.camera)], one.tracks,
+                                    motion, parameter));
   });
   return all;
 }
@@ -177,54 +233,14 @@ std::vector<CameraDoubt> doubt_cameras(const MappingInput& input,
                                        const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                                        const CameraDoubtOptions& options) {
   std::vector<CameraDoubt> doubts;
-  const auto evidence = camera_evidence(input, T_map_vehicle, options);
   const VehicleMotion motion = vehicle_motion(input, T_map_vehicle);
-  for (int s = 0; s < static_cast<int>(input.half_rigs.size()); ++s) {
-    const Rig& rig = input.half_rigs[static_cast<std::size_t>(s)];
-    if (rig.cameras.size() < 2) continue;
-    std::vector<std::vector<CameraTrack>> tracks(rig.cameras.size());
-    for (std::size_t c = 0; c < tracks.size(); ++c)
-      tracks[c] = follow_corners(input, s, static_cast<int>(c));
-    const auto share = shares_as_others(rig, tracks, motion, options);
-    if (std::getenv("RB_DOUBT")) {
-      for (const auto& e : evidence) {
-        std::fprintf(stderr, "DOUBT %d cam%d tracks %zu fit %.3f rep %.2f", e.session, e.camera,
-                     e.tracks, e.fit_share, e.repeated_share);
-        for (const auto& f : e.fits)
-          std::fprintf(stderr, " | %.2f sz %.1f sg", f.gain,
-                       relative_size(f, rig.cameras[static_cast<std::size_t>(e.camera)], options)),
-              std::fprintf(stderr, " %.0f", significance(f));
-        std::fprintf(stderr, "\n");
-      }
-      for (Eigen::Index r = 0; r < share.rows(); ++r) {
-        for (Eigen::Index c = 0; c < share.cols(); ++c) std::fprintf(stderr, " %.2f", share(r, c));
-        std::fprintf(stderr, "\n");
-      }
-    }
-    const auto swapped = exchanged(input, s, share);
-    doubts.insert(doubts.end(), swapped.begin(), swapped.end());
-    double largest = 0.0;
-    std::vector<std::pair<double, const CameraEvidence*>> found;
-    for (const CameraEvidence& one : evidence) {
-      if (one.session != s) continue;
-      if (one.repeated_share > kRepeated) {
-        doubts.push_back({s, one.camera, "images",
-                          fixed(100.0 * one.repeated_share, 0) +
-                              " % of them repeat the image before, though the vehicle moves",
-                          "a new image each time"});
-        continue;
-      }
-      const CameraFit* fit = likeliest(one);
-      if (!fit || !swapped.empty()) continue;
-      const auto& camera = rig.cameras[static_cast<std::size_t>(one.camera)];
-      const double size = relative_size(*fit, camera, options);
-      if (size < 1.0 || significance(*fit) < options.min_sigmas || fit->gain < options.min_gain)
-        continue;
-      largest = std::max(largest, size);
-      found.emplace_back(size, &one);
-    }
-    for (const auto& [size, one] : found)
-      if (size >= options.of_largest * largest) doubts.push_back(doubt_of(*one, *likeliest(*one)));
+  const auto evidence = camera_evidence(input, motion, options.num_threads);
+  std::size_t begin = 0;
+  for (const Rig& rig : input.half_rigs) {
+    const auto found =
+        doubts_of_rig(rig, std::span(evidence).subspan(begin, rig.cameras.size()), motion, options);
+    doubts.insert(doubts.end(), found.begin(), found.end());
+    begin += rig.cameras.size();
   }
   return doubts;
 }

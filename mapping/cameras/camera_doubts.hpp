@@ -22,34 +22,34 @@ struct CameraDoubt {
   std::string want;
 };
 
-/// Evidence about one camera, for studies.
+/// Evidence about one camera.
 struct CameraEvidence {
   int session = 0;
   int camera = 0;
-  std::size_t tracks = 0;
-  double fit_share = -1.0;      ///< of the tracks; -1: none
+  std::vector<CameraTrack> tracks;
   double repeated_share = 0.0;  ///< of keyframes with exactly the corners before
   std::vector<CameraFit> fits;  ///< of each group of parameters
 };
 
 struct CameraDoubtOptions {
-  double inlier_px = 1.0;       ///< of a track that fits, half-size image
+  double inlier_px = 0.6;       ///< of a track that fits, half-size image
   double rotation_rad = 0.009;  ///< sizes that matter
   double focal = 0.006;         ///< relative
   double centre_share = 0.012;  ///< of the focal length
   double position_m = 0.15;
   double delay_s = 0.010;
   double min_sigmas = 5.0;  ///< a smaller effect may be chance
-  double min_gain = 0.02;   ///< share of the misfit that the effect explains
+  double min_gain = 0.003;  ///< share of the misfit that the effect explains
+  double as_likely = 0.85;  ///< another parameter with this share of the gain is named too
   double of_largest = 0.6;  ///< other cameras' effects below this share of the largest follow
                             ///< from it
   int num_threads = 0;
 };
 
-[[nodiscard]] std::vector<CameraEvidence> camera_evidence(
-    const MappingInput& input,
-    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-    const CameraDoubtOptions& options = {});
+/// Of each camera of each session in turn. Deterministic on any number of threads.
+[[nodiscard]] std::vector<CameraEvidence> camera_evidence(const MappingInput& input,
+                                                          const VehicleMotion& motion,
+                                                          int num_threads);
 
 /// What is likely wrong with the cameras: images that repeat, images of two cameras exchanged, the
 /// parameter of a camera that explains its misfit best. One doubt a camera at most. Rigs of one

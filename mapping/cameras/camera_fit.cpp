@@ -51,17 +51,23 @@ class TrackSolver {
         geometry_(corrected(mounted, errors)),
         centre_(principal_point(mounted.camera)) {}
 
-  std::optional<SolvedTrack> solve(const CameraTrack& track) {
+  // `point` [m, map]: where the search starts, empty for a first search; then the point found.
+  std::optional<SolvedTrack> solve(const CameraTrack& track,
+                                   std::optional<Eigen::Vector3d>& point) {
     const std::size_t n = std::min(track.views.size(), kMostViews);
     poses_.clear();
     for (std::size_t i = 0; i < n; ++i)
       poses_.push_back(pose_of_view(track.views[i], motion_, errors_[9]));
-    auto point = first_point(track, n);
+    const int steps = point ? 2 : 4;
+    if (!point) point = first_point(track, n);
     if (!point) return std::nullopt;
     SolvedTrack solved;
-    for (int round = 0; round < 4; ++round) {
-      if (!evaluate(track, n, *point, solved)) return std::nullopt;
-      if (round < 3) *point += step();
+    for (int round = 0; round <= steps; ++round) {
+      if (!evaluate(track, n, *point, solved)) {
+        point.reset();
+        return std::nullopt;
+      }
+      if (round < steps) *point += step();
     }
     eliminate(solved);
     return solved;
@@ -174,8 +180,6 @@ struct Normal {
   Eigen::VectorXd g;
   std::map<int, Eigen::VectorXd> scores;  // by stretch
   double cost = 0.0;
-  double sum_squares = 0.0;
-  double sum_weights = 0.0;
 };
 
 Normal normal_equations(const MountedCamera& camera,
@@ -183,13 +187,15 @@ Normal normal_equations(const MountedCamera& camera,
                         const VehicleMotion& motion,
                         const CameraErrors& errors,
                         const ParameterRange& range,
-                        double width_px) {
+                        double width_px,
+                        std::vector<std::optional<Eigen::Vector3d>>& points) {
   Normal normal;
   normal.H = Eigen::MatrixXd::Zero(range.count, range.count);
   normal.g = Eigen::VectorXd::Zero(range.count);
   TrackSolver solver(camera, motion, errors);
-  for (const CameraTrack& track : tracks) {
-    const auto solved = solver.solve(track);
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    const CameraTrack& track = tracks[t];
+    const auto solved = solver.solve(track, points[t]);
     if (!solved) {
       normal.cost += 1.0;
       continue;
@@ -228,7 +234,7 @@ ParameterRange range_of(CameraParameter parameter) {
     case CameraParameter::kCentre:
       return {4, 2};
     case CameraParameter::kPosition:
-      return {6, 3};
+      return {6, 2};
     case CameraParameter::kDelay:
       return {9, 1};
   }
@@ -264,7 +270,8 @@ double fitting_share(const MountedCamera& camera,
   TrackSolver solver(camera, motion, none);
   std::size_t fit = 0;
   for (const CameraTrack& track : tracks) {
-    const auto solved = solver.solve(track);
+    std::optional<Eigen::Vector3d> point;
+    const auto solved = solver.solve(track, point);
     fit += solved && solved->rms_px <= inlier_px ? 1 : 0;
   }
   return static_cast<double>(fit) / static_cast<double>(tracks.size());
@@ -274,15 +281,16 @@ CameraFit fit_camera(const MountedCamera& camera,
                      const std::vector<CameraTrack>& tracks,
                      const VehicleMotion& motion,
                      CameraParameter parameter) {
-  constexpr std::array kWidthsPx = {4.0, 3.0, 2.0, 1.5, 1.0, 1.0};
+  constexpr std::array kWidthsPx = {3.0, 2.0, 1.0, 0.6, 0.6};
   CameraFit fit;
   fit.parameter = parameter;
   const ParameterRange range = range_of(parameter);
   const Eigen::VectorXd prior =
       prior_sigmas().segment(range.first, range.count).array().inverse().square() * kNoisePx *
       kNoisePx;
+  std::vector<std::optional<Eigen::Vector3d>> points(tracks.size());
   const auto equations = [&](double width) {
-    return normal_equations(camera, tracks, motion, fit.errors, range, width);
+    return normal_equations(camera, tracks, motion, fit.errors, range, width, points);
   };
   const double before = equations(kWidthsPx.back()).cost;
   for (const double width : kWidthsPx) {

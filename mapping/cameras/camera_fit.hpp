@@ -21,8 +21,8 @@ inline constexpr std::array kCameraParameters = {
     CameraParameter::kPosition, CameraParameter::kDelay};
 
 /// Sizes of all parameters: rotation vector about the vehicle's axes [rad] (0 to 2), relative focal
-/// length (3), principal point [px, half-size image] (4, 5), position [m, vehicle] (6 to 8), time
-/// that the images are late by [s] (9).
+/// length (3), principal point [px, half-size image] (4, 5), position [m, vehicle] (6 to 8; the
+/// height shows in no turn and is not fitted), time that the images are late by [s] (9).
 using CameraErrors = Eigen::Matrix<double, 10, 1>;
 
 /// First index and number of a group's parameters in CameraErrors.

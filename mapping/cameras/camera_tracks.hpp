@@ -21,8 +21,8 @@ struct CameraTrack {
 };
 
 struct CameraTrackOptions {
-  int stretches = 48;       ///< spread evenly over the drive
-  int keyframes = 5;        ///< of a stretch
+  int stretches = 60;       ///< spread evenly over the drive
+  int keyframes = 7;        ///< of a stretch
   std::size_t most = 1500;  ///< tracks, spread evenly over the stretches
   int max_hamming = 90;     ///< of 512 bits
   double max_ratio = 0.8;   ///< nearest over second-nearest descriptor distance
