@@ -44,7 +44,8 @@ ordered_json cameras_json(const std::vector<CameraFigures>& cameras) {
                     {"fit_share", number_or_null(c.fit_share)},
                     {"views", number_or_null(c.views)},
                     {"residual_px", residual},
-                    {"paired_share", number_or_null(c.paired_share)}});
+                    {"paired_share", number_or_null(c.paired_share)},
+                    {"late_s", number_or_null(c.late_s)}});
   }
   return list;
 }

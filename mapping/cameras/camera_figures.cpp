@@ -1,5 +1,7 @@
 #include "mapping/cameras/camera_figures.hpp"
 
+#include <algorithm>
+
 #include "mapping/cameras/principal_point.hpp"
 #include "vo/track_drive.hpp"
 
@@ -65,6 +67,30 @@ std::optional<double> paired_share(const Drive& drive, std::size_t camera) {
   return static_cast<double>(paired) / static_cast<double>(images);
 }
 
+// Median time from the nearest image of another camera to each unpaired image.
+std::optional<double> lateness_s(const Drive& drive, std::size_t camera) {
+  std::vector<std::int64_t> others;
+  std::vector<std::int64_t> alone;
+  for (std::size_t f = 0; f < drive.frame_count(); ++f) {
+    bool has_other = false;
+    for (std::size_t c = 0; c < drive.rig().cameras.size(); ++c)
+      has_other = has_other || (c != camera && drive.has_image(f, c));
+    if (has_other) others.push_back(drive.frame_stamp_ns(f));
+    if (!has_other && drive.has_image(f, camera)) alone.push_back(drive.frame_stamp_ns(f));
+  }
+  if (others.empty() || alone.empty()) return std::nullopt;
+  std::vector<std::int64_t> late;
+  for (const std::int64_t t : alone) {
+    const auto after = std::lower_bound(others.begin(), others.end(), t);
+    const std::int64_t to = after == others.end() ? others.back() : *after;
+    const std::int64_t from = after == others.begin() ? others.front() : *(after - 1);
+    late.push_back(t - from <= to - t || to < t ? t - from : t - to);
+  }
+  std::nth_element(late.begin(), late.begin() + static_cast<std::ptrdiff_t>(late.size() / 2),
+                   late.end());
+  return static_cast<double>(late[late.size() / 2]) * 1e-9;
+}
+
 }  // namespace
 
 std::vector<CameraFigures> camera_figures(const MappingInput& input,
@@ -78,6 +104,7 @@ std::vector<CameraFigures> camera_figures(const MappingInput& input,
       camera.session = drive.name();
       camera.camera = drive.rig().cameras[c].name;
       camera.paired_share = paired_share(drive, c);
+      if (camera.paired_share && *camera.paired_share < 0.5) camera.late_s = lateness_s(drive, c);
       figures.push_back(std::move(camera));
     }
   for (std::size_t k = 0; k < input.session.size(); ++k) {

@@ -33,6 +33,8 @@ struct CameraFigures {
   std::optional<double> views;           ///< fitting corners a keyframe; empty without any
   std::optional<MeanResidual> residual;  ///< empty without fitting corners
   std::optional<double> paired_share;    ///< of its images at the time of another camera's image
+  std::optional<double> late_s;  ///< median time from another camera's nearest image to an unpaired
+                                 ///< one; empty if most are paired
 };
 
 /// Figures of every camera of every drive, in their order. `stage` and `result` as adjusted.

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "drive/drive.hpp"
-#include "drive/true_poses.hpp"
 #include "mapping/cameras/camera_doubts.hpp"
 #include "mapping/pieces.hpp"
 #include "mapping/pipeline/checkpoint_blobs.hpp"
@@ -18,7 +17,8 @@
 #include "mapping/pipeline/map_inputs.hpp"
 #include "mapping/pipeline/map_stages.hpp"
 #include "mapping/pipeline/odometry_checkpoint.hpp"
-#include "mapping/similarity.hpp"
+#include "mapping/pipeline/short_segments.hpp"
+#include "mapping/pipeline/truth_error.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_disk.hpp"
@@ -27,8 +27,6 @@
 
 namespace roadbook {
 namespace {
-
-constexpr std::int64_t kTruthToleranceNs = 5'000'000;
 
 double peak_rss_mb() {
   rusage usage{};
@@ -90,6 +88,15 @@ std::vector<LoopClosure> loops_of(const MappingInput& input,
   return loops;
 }
 
+Problem short_segments_warning(const Drive& drive, int keyframes) {
+  return {Severity::kWarning,
+          drive.folder().string(),
+          0,
+          "keyframes",
+          std::to_string(keyframes) + " between gaps, too few to be placed; they are left out",
+          "images without gaps"};
+}
+
 std::string drive_path_of(const Drive& drive, const std::filesystem::path& map) {
   std::error_code ignored;
   const auto relative = std::filesystem::relative(
@@ -114,26 +121,6 @@ Session session_of(const Drive& drive,
   session.t_begin_ns = drive.frame_stamp_ns(0);
   session.t_end_ns = drive.frame_stamp_ns(drive.frame_count() - 1);
   return session;
-}
-
-void compare_with_truth(const std::vector<Drive>& drives, const Map& map, MapSummary& summary) {
-  std::vector<Eigen::Vector3d> reference;
-  std::vector<Eigen::Vector3d> estimate;
-  if (drives.size() != 1) return;  // the truth of each drive has its own frame
-  const auto truth = true_poses(drives.front());
-  std::vector<std::int64_t> truth_t;
-  std::vector<std::int64_t> map_t;
-  for (const auto& pose : truth) truth_t.push_back(pose.t_ns);
-  for (const auto& keyframe : map.keyframes) map_t.push_back(keyframe.t_ns);
-  for (const auto& [a, b] : associate_stamps(truth_t, map_t, kTruthToleranceNs)) {
-    reference.push_back(truth[a].T_world_vehicle.translation());
-    estimate.push_back(map.T_map_vehicle(static_cast<int>(b)).translation());
-  }
-  if (reference.size() < 3) return;
-  const auto error =
-      trajectory_error(reference, estimate, summary.scale_source == ScaleSource::kFree);
-  summary.ate_median_m = error.median_m;
-  summary.ate_p95_m = error.p95_m;
 }
 
 void count_contents(const Map& map, MapSummary& summary) {
@@ -181,7 +168,10 @@ void fill_summary(const std::vector<Drive>& drives,
     const auto warnings = drive.warnings();
     summary.warnings.insert(summary.warnings.end(), warnings.begin(), warnings.end());
   }
-  compare_with_truth(drives, map, summary);
+  if (const auto error = truth_error(drives, map, summary.scale_source == ScaleSource::kFree)) {
+    summary.ate_median_m = error->median_m;
+    summary.ate_p95_m = error->p95_m;
+  }
 }
 
 }  // namespace
@@ -240,6 +230,8 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   for (std::size_t i = 0; i < drives.size(); ++i) {
     odometry.push_back(clock.run(
         "odometry", [&] { return odometry_of(drives[i], cars[i], i, options, build, progress); }));
+    const int removed = remove_short_segments(odometry.back(), options.min_keyframes);
+    if (removed > 0) summary.warnings.push_back(short_segments_warning(drives[i], removed));
     rigs.push_back(drives[i].rig());
     has_wheels.push_back(odometry.back().uses_wheels);
     add_doubts(drives[i], odometry.back(), summary.warnings);

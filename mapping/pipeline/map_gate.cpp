@@ -1,6 +1,7 @@
 #include "mapping/pipeline/map_gate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -86,6 +87,13 @@ std::string why(const std::vector<Problem>& doubts) {
   if (doubts.empty()) return " (dark or covered images, a wrong calibration?)";
   const Problem& first = doubts.front();
   return " (" + first.file + ": " + first.field + ": " + first.got + ")";
+}
+
+std::string lateness_text(const CameraFigures& camera) {
+  if (!camera.late_s) return "";
+  const double ms = 1e3 * std::abs(*camera.late_s);
+  return ", stamped " + fixed(ms, ms < 1.0 ? 3 : 0) +
+         (*camera.late_s > 0.0 ? " ms after them" : " ms before them");
 }
 
 void require_cameras(const std::vector<CameraFigures>& cameras,
@@ -199,8 +207,9 @@ std::vector<Problem> warnings_of_idle_cameras(const std::vector<CameraFigures>& 
       if (camera.paired_share && *camera.paired_share < kPaired)
         warnings.push_back({Severity::kWarning, folder, 0, "timestamp",
                             fixed(100.0 * *camera.paired_share, 0) +
-                                " % of its images at the time of another camera's",
-                            "nearly all (a clock of its own, or late?)"});
+                                " % of its images at the time of another camera's" +
+                                lateness_text(camera),
+                            "nearly all (a clock of its own, or a time_offset?)"});
       else if (!is_in_use(camera, options))
         warnings.push_back({Severity::kWarning, folder, 0, "landmarks",
                             camera.views ? fixed(*camera.views, 1) + " in view at a keyframe"
