@@ -49,14 +49,20 @@ double significance(const CameraFit& fit) {
   return most;
 }
 
-// The fits that explain the misfit best, likeliest first.
-std::vector<const CameraFit*> likeliest(const CameraEvidence& evidence, double as_likely) {
+// The fits that matter and are no chance, likeliest first: those that explain nearly as much as the
+// best.
+std::vector<const CameraFit*> likeliest(const CameraEvidence& evidence,
+                                        const MountedCamera& camera,
+                                        const CameraDoubtOptions& options) {
   std::vector<const CameraFit*> fits;
-  for (const CameraFit& fit : evidence.fits) fits.push_back(&fit);
+  for (const CameraFit& fit : evidence.fits)
+    if (relative_size(fit, camera, options) >= 1.0 && significance(fit) >= options.min_sigmas &&
+        fit.gain >= options.min_gain)
+      fits.push_back(&fit);
   std::stable_sort(fits.begin(), fits.end(),
                    [](const CameraFit* a, const CameraFit* b) { return a->gain > b->gain; });
-  std::erase_if(fits, [best = fits.empty() ? 0.0 : fits.front()->gain,
-                       as_likely](const CameraFit* fit) { return fit->gain < as_likely * best; });
+  const double least = fits.empty() ? 0.0 : options.as_likely * fits.front()->gain;
+  std::erase_if(fits, [&](const CameraFit* fit) { return fit->gain < least; });
   return fits;
 }
 
@@ -159,13 +165,10 @@ std::vector<CameraDoubt> wrong_parameters(const Rig& rig,
   double largest = 0.0;
   for (const CameraEvidence& one : evidence) {
     if (one.repeated_share > kRepeated) continue;
-    auto fits = likeliest(one, options.as_likely);
+    const MountedCamera& camera = rig.cameras[static_cast<std::size_t>(one.camera)];
+    auto fits = likeliest(one, camera, options);
     if (fits.empty()) continue;
-    const CameraFit& fit = *fits.front();
-    const double size =
-        relative_size(fit, rig.cameras[static_cast<std::size_t>(one.camera)], options);
-    if (size < 1.0 || significance(fit) < options.min_sigmas || fit.gain < options.min_gain)
-      continue;
+    const double size = relative_size(*fits.front(), camera, options);
     largest = std::max(largest, size);
     found.push_back({size, &one, std::move(fits)});
   }
