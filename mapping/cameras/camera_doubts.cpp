@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <numbers>
 #include <span>
 
@@ -49,6 +47,13 @@ double significance(const CameraFit& fit) {
   return most;
 }
 
+// Positions and principal points are told from turns and poses in small ways only.
+double least_sigmas(CameraParameter parameter, const CameraDoubtOptions& options) {
+  const bool is_weak =
+      parameter == CameraParameter::kPosition || parameter == CameraParameter::kCentre;
+  return is_weak ? options.min_sigmas_weak : options.min_sigmas;
+}
+
 // The fits that matter and are no chance, likeliest first: those that explain nearly as much as the
 // best.
 std::vector<const CameraFit*> likeliest(const CameraEvidence& evidence,
@@ -56,8 +61,8 @@ std::vector<const CameraFit*> likeliest(const CameraEvidence& evidence,
                                         const CameraDoubtOptions& options) {
   std::vector<const CameraFit*> fits;
   for (const CameraFit& fit : evidence.fits)
-    if (relative_size(fit, camera, options) >= 1.0 && significance(fit) >= options.min_sigmas &&
-        fit.gain >= options.min_gain)
+    if (relative_size(fit, camera, options) >= 1.0 &&
+        significance(fit) >= least_sigmas(fit.parameter, options) && fit.gain >= options.min_gain)
       fits.push_back(&fit);
   std::stable_sort(fits.begin(), fits.end(),
                    [](const CameraFit* a, const CameraFit* b) { return a->gain > b->gain; });
@@ -192,17 +197,6 @@ std::vector<CameraDoubt> doubts_of_rig(const Rig& rig,
                             " % of them repeat the image before, though the vehicle moves",
                         "a new image each time"});
   const auto share = shares_as_others(rig, evidence, motion, options);
-  if (std::getenv("RB_DOUBT")) {
-    for (const auto& e : evidence) {
-      std::fprintf(stderr, "DOUBT %d cam%d tracks %zu fit %.3f rep %.2f", e.session, e.camera,
-                   e.tracks.size(), share(e.camera, e.camera), e.repeated_share);
-      for (const auto& f : e.fits)
-        std::fprintf(stderr, " | %.3f sz %.1f sg %.0f", f.gain,
-                     relative_size(f, rig.cameras[static_cast<std::size_t>(e.camera)], options),
-                     significance(f));
-      std::fprintf(stderr, "\n");
-    }
-  }
   auto more = exchanged(rig, evidence.front().session, share);
   if (more.empty()) more = wrong_parameters(rig, evidence, options);
   doubts.insert(doubts.end(), more.begin(), more.end());
@@ -225,9 +219,13 @@ std::vector<CameraEvidence> camera_evidence(const MappingInput& input,
     one.tracks = follow_corners(input, one.session, one.camera);
     one.repeated_share = repeated_share(input, one.session, one.camera);
     if (one.tracks.size() < kFewestTracks) return;
-    for (const CameraParameter parameter : kCameraParameters)
-      one.fits.push_back(fit_camera(rig.cameras[static_cast<std::size_t>(one.camera)], one.tracks,
-                                    motion, parameter));
+    const MountedCamera& camera = rig.cameras[static_cast<std::size_t>(one.camera)];
+    const double before = cost_as_calibrated(camera, one.tracks, motion);
+    for (const CameraParameter parameter : kCameraParameters) {
+      CameraFit fit = fit_camera(camera, one.tracks, motion, parameter);
+      fit.gain = before > 0.0 ? (before - fit.cost) / before : 0.0;
+      one.fits.push_back(fit);
+    }
   });
   return all;
 }

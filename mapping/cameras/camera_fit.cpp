@@ -165,6 +165,9 @@ class TrackSolver {
   Eigen::Vector3d b_;
 };
 
+// Of the tracks' errors, from a coarse first solution to the last.
+constexpr std::array kWidthsPx = {3.0, 2.0, 1.0, 0.6, 0.6};
+
 // Geman-McClure: cost and weight of a track, by its error over the width.
 double robust_cost(double rms_px, double width_px) {
   const double u = rms_px * rms_px / (width_px * width_px);
@@ -219,7 +222,7 @@ Normal normal_equations(const MountedCamera& camera,
 // Broad bounds of each parameter, which hold what the tracks do not determine.
 CameraErrors prior_sigmas() {
   CameraErrors sigma;
-  sigma << 0.3, 0.3, 0.3, 0.3, 60.0, 60.0, 1.0, 1.0, 1.0, 0.3;
+  sigma << 0.3, 0.3, 0.3, 0.3, 60.0, 60.0, 0.3, 0.3, 0.3, 0.3;
   return sigma;
 }
 
@@ -277,11 +280,22 @@ double fitting_share(const MountedCamera& camera,
   return static_cast<double>(fit) / static_cast<double>(tracks.size());
 }
 
+double cost_as_calibrated(const MountedCamera& camera,
+                          const std::vector<CameraTrack>& tracks,
+                          const VehicleMotion& motion) {
+  std::vector<std::optional<Eigen::Vector3d>> points(tracks.size());
+  double cost = 0.0;
+  for (std::size_t round = 0; round <= kWidthsPx.size(); ++round)
+    cost = normal_equations(camera, tracks, motion, CameraErrors::Zero(), {0, 1}, kWidthsPx.back(),
+                            points)
+               .cost;
+  return cost;
+}
+
 CameraFit fit_camera(const MountedCamera& camera,
                      const std::vector<CameraTrack>& tracks,
                      const VehicleMotion& motion,
                      CameraParameter parameter) {
-  constexpr std::array kWidthsPx = {3.0, 2.0, 1.0, 0.6, 0.6};
   CameraFit fit;
   fit.parameter = parameter;
   const ParameterRange range = range_of(parameter);
@@ -292,7 +306,6 @@ CameraFit fit_camera(const MountedCamera& camera,
   const auto equations = [&](double width) {
     return normal_equations(camera, tracks, motion, fit.errors, range, width, points);
   };
-  const double before = equations(kWidthsPx.back()).cost;
   for (const double width : kWidthsPx) {
     Normal normal = equations(width);
     normal.H.diagonal() += prior;
@@ -307,7 +320,7 @@ CameraFit fit_camera(const MountedCamera& camera,
       normal.H.ldlt().solve(Eigen::MatrixXd::Identity(range.count, range.count));
   fit.sigmas.segment(range.first, range.count) =
       (inverse * meat * inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
-  fit.gain = before > 0.0 ? (before - normal.cost) / before : 0.0;
+  fit.cost = normal.cost;
   return fit;
 }
 

@@ -53,8 +53,14 @@ struct CameraFit {
   CameraErrors errors =
       CameraErrors::Zero();  ///< of the calibration; others than the group's are 0
   CameraErrors sigmas = CameraErrors::Zero();  ///< cluster-robust over stretches
-  double gain = 0.0;                           ///< share of the robust cost that goes away
+  double cost = 0.0;                           ///< robust, of all tracks
+  double gain = 0.0;  ///< share of `cost_as_calibrated` that goes away; the caller sets it
 };
+
+/// Robust cost of all tracks without a fit, solved as often as in a fit, so that the two compare.
+[[nodiscard]] double cost_as_calibrated(const MountedCamera& camera,
+                                        const std::vector<CameraTrack>& tracks,
+                                        const VehicleMotion& motion);
 
 /// Fits one group of parameters. Robust against wrong matches. Deterministic.
 [[nodiscard]] CameraFit fit_camera(const MountedCamera& camera,
