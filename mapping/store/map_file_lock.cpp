@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/files/disk_space.hpp"
 #include "base/files/lock_holder.hpp"
 #include "mapping/store/map_file_disk.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
@@ -64,8 +66,10 @@ struct HeldMap {
     }
     if (code == SQLITE_BUSY) refuse_held(part, lock_holder(part));
     if (code != SQLITE_OK)
-      throw StorageError(to_line({Severity::kError, part.string(), 0, "lock",
-                                  sqlite3_errmsg(database.handle()), "a writable folder"}));
+      throw StorageError(to_line(
+          {Severity::kError, part.string(), 0, "lock",
+           code == SQLITE_FULL ? write_fault(part, ENOSPC) : sqlite3_errmsg(database.handle()),
+           "a writable folder"}));
   }
   ~HeldMap() {
     try {
@@ -109,7 +113,8 @@ class HeldMaps {
     const std::filesystem::path part = beside(map, ".part");
     // A forked process does not hold what its parent holds.
     const std::string key =
-        std::to_string(getpid()) + " " + std::filesystem::weakly_canonical(part).string();
+        std::to_string(getpid()) + " " +
+        std::filesystem::weakly_canonical(std::filesystem::absolute(part)).string();
     const std::lock_guard lock(mutex_);
     std::shared_ptr<HeldMap> held = maps_[key].lock();
     if (held && for_work && held->in_work) refuse_held(part, "this process");

@@ -86,6 +86,22 @@ TEST(MapHold, ItsProcessChangesTheMapUnderItOneObjectAtATime) {
   EXPECT_NE(refusal_elsewhere([&] { MapUpdate update(path); }), "");
 }
 
+// The path of a file that does not exist yet, as a user types it.
+TEST(MapHold, IsOneForARelativePath) {
+  const Folder folder;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder / "");
+  {
+    const MapHold hold("a.gpkg");
+    MapFileBuilder("a.gpkg", "key").finish(small_map(1), {});
+    const MapHold second("./a.gpkg");
+    MapUpdate update(folder / "a.gpkg");
+    update.commit();
+  }
+  std::filesystem::current_path(before);
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.gpkg"));
+}
+
 // Checkpoints survive the end of a hold; a lock file alone does not.
 TEST(MapHold, KnowsTheBuildThatWaits) {
   const Folder folder;
