@@ -13,7 +13,53 @@
 namespace roadbook {
 namespace {
 
+bool has_table_of(const SqlDatabase& database, const char* table) {
+  SqlStatement row =
+      database.prepare("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?");
+  row.bind_text(1, table);
+  return row.step() && row.integer(0) == 1;
+}
+
+// Gives the rows of `ordered` (a query of ids) the ids 1, 2, ... in `table` and in the column that
+// refers to it. Two steps, because ids are unique.
+void renumber(const SqlDatabase& database,
+              const std::string& table,
+              const std::string& ordered,
+              const std::string& reference = "") {
+  std::vector<std::int64_t> ids;
+  SqlStatement rows = database.prepare(ordered);
+  while (rows.step()) ids.push_back(rows.integer(0));
+  std::vector<std::string> updates{"UPDATE " + table + " SET id = ? WHERE id = ?"};
+  if (!reference.empty())
+    updates.push_back("UPDATE gpkg_metadata_reference SET " + reference + " = ? WHERE " +
+                      reference + " = ?");
+  for (const std::string& sql : updates) {
+    SqlStatement update = database.prepare(sql);
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      update.bind(1, -static_cast<std::int64_t>(i + 1)).bind(2, ids[i]).run();
+    for (std::size_t i = 1; i <= ids.size(); ++i)
+      update.bind(1, static_cast<std::int64_t>(i)).bind(2, -static_cast<std::int64_t>(i)).run();
+  }
+}
+
+// GDAL numbers what belongs to rasters in the order of writing. The order of the names instead does
+// not depend on the history of the file: the same verb twice gives the same content.
+void order_raster_ids(const SqlDatabase& database) {
+  if (has_table_of(database, "gpkg_2d_gridded_coverage_ancillary"))
+    renumber(database, "gpkg_2d_gridded_coverage_ancillary",
+             "SELECT id FROM gpkg_2d_gridded_coverage_ancillary ORDER BY tile_matrix_set_name");
+  if (has_table_of(database, "gpkg_2d_gridded_tile_ancillary"))
+    renumber(database, "gpkg_2d_gridded_tile_ancillary",
+             "SELECT id FROM gpkg_2d_gridded_tile_ancillary ORDER BY tpudt_name, tpudt_id");
+  if (has_table_of(database, "gpkg_metadata_reference"))
+    renumber(database, "gpkg_metadata",
+             "SELECT m.id FROM gpkg_metadata m LEFT JOIN gpkg_metadata_reference r "
+             "ON r.md_file_id = m.id GROUP BY m.id ORDER BY min(r.table_name), m.id",
+             "md_file_id");
+}
+
 void complete(const SqlDatabase& database) {
+  order_raster_ids(database);
   unite_map_frames(database);
   write_layer_styles(database, utc_text(newest_session_ns(database)));
   set_meta_value(database, "schema_version", std::to_string(kMapSchemaVersion));

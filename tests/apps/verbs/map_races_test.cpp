@@ -283,8 +283,12 @@ TEST(SameVerbTwice, GivesTheSameMap) {
   EXPECT_EQ(digest_after("roads"), roads);
   const std::string speeds = digest_after("speeds --truth");
   EXPECT_EQ(digest_after("speeds --truth"), speeds);
-  EXPECT_EQ(digest_after("roads"), speeds);
-  EXPECT_EQ(history(), (std::vector<std::string>{"map", "roads", "speeds"}));
+  const std::string linked = digest_after("roads");  // spaces of the truth have lanes now
+  EXPECT_EQ(digest_after("speeds --truth"), linked);
+  const std::string overhead = digest_after("overhead --resolution-m 0.1");
+  EXPECT_EQ(digest_after("overhead --resolution-m 0.1"), overhead);
+  EXPECT_EQ(digest_after("speeds --truth"), overhead);
+  EXPECT_EQ(history(), (std::vector<std::string>{"map", "roads", "speeds", "roads", "overhead"}));
 }
 
 }  // namespace
