@@ -3,11 +3,13 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/se3.hpp"
+#include "mapping/known_covariance.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/vehicle.hpp"
 #include "sensors/wheels.hpp"
@@ -32,9 +34,9 @@ struct Session {
   VehicleMeasures vehicle;  ///< that carried the sensors; empty where nobody described it
   VehicleSource vehicle_source = VehicleSource::kNone;
   double wheel_scale = 1.0;  ///< estimated factor on the wheels' distance
-  double wheel_scale_sigma = 0.0;
+  double wheel_scale_sigma = std::numeric_limits<double>::quiet_NaN();  ///< NaN: unknown
   ScaleSource scale_source = ScaleSource::kFree;
-  double scale_sigma = 0.0;  ///< relative; 0 where free
+  double scale_sigma = std::numeric_limits<double>::quiet_NaN();  ///< relative; NaN: unknown
   std::int64_t t_begin_ns = 0;
   std::int64_t t_end_ns = 0;
 };
@@ -51,8 +53,8 @@ struct Keyframe {
   int drive_frame = 0;  ///< index in the drive
   int map_frame = 0;
   Eigen::Isometry3d T_frame_vehicle = Eigen::Isometry3d::Identity();  ///< in its map frame
-  Matrix6d covariance =
-      Matrix6d::Zero();      ///< of the right perturbation, gauge: first keyframe fixed
+  /// Of the right perturbation, relative to the first keyframe of its piece; NaN: unknown.
+  Matrix6d covariance = unknown_covariance<Matrix6d>();
   double travelled_m = 0.0;  ///< since the session's start, along the map's poses; gaps add nothing
   bool reversing = false;
   bool after_gap = false;  ///< the motion from the previous keyframe is not known from odometry
@@ -61,8 +63,9 @@ struct Keyframe {
 
 struct Landmark {
   int map_frame = 0;
-  Eigen::Vector3d p_frame = Eigen::Vector3d::Zero();     ///< in its map frame
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< given the poses
+  Eigen::Vector3d p_frame = Eigen::Vector3d::Zero();  ///< in its map frame
+  /// Given the poses; NaN: unknown.
+  Eigen::Matrix3d covariance = unknown_covariance<Eigen::Matrix3d>();
   Descriptor descriptor{};
   bool ground = false;  ///< lies on the driven surface
 };

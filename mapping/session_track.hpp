@@ -31,7 +31,8 @@ class SessionTrack {
 /// A vehicle pose with its covariance.
 struct TrackPose {
   Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
-  Matrix6d covariance = Matrix6d::Zero();  ///< right perturbation; gauge: the first keyframe fixed
+  /// Of the right perturbation, relative to the first keyframe of its piece; NaN: unknown.
+  Matrix6d covariance = unknown_covariance<Matrix6d>();
 };
 
 /// Returns the pose of a session's vehicle at one stamp. At a keyframe it is the keyframe's pose.
@@ -59,7 +60,7 @@ struct TrackPose {
 [[nodiscard]] std::optional<TrackPose> track_pose(const Map& map, int session, std::int64_t t_ns);
 
 /// Covariance [m^2] of x and y in the map of point `p` (vehicle frame [m]) that follows from the
-/// covariance of the vehicle pose.
+/// covariance of the vehicle pose. NaN if that is unknown.
 [[nodiscard]] Eigen::Matrix2d covariance_of_point(const TrackPose& vehicle,
                                                   const Eigen::Vector3d& p);
 

@@ -18,6 +18,7 @@ NetworkSource source_of(const Map& map) {
     newest_ns = std::max(newest_ns, session.t_end_ns);
   }
   source.date_utc = utc_text(newest_ns);
+  // One unknown covariance makes the mean of all unknown (NaN).
   double variance = 0.0;
   for (const Keyframe& keyframe : map.keyframes)
     variance += (keyframe.covariance(0, 0) + keyframe.covariance(1, 1)) / 2.0;

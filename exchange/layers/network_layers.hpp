@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "mapping/store/map_file.hpp"
@@ -11,7 +12,8 @@ namespace roadbook {
 struct NetworkSource {
   std::string sessions;  ///< names of the sessions whose poses were used, separated by commas
   std::string date_utc;  ///< of the newest of them (utc_text)
-  double sigma_m = 0.0;  ///< standard deviation of the driven positions
+  /// Standard deviation of the driven positions; NaN: unknown, NULL in layers.
+  double sigma_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Writes layers `lanes` and `intersections` and table `road_network`, replacing older ones.

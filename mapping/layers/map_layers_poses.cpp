@@ -58,7 +58,6 @@ VectorLayer pose_layer(const Map& map) {
     const Eigen::Quaterniond q(T.linear());
     const Eigen::Vector3d p = T.translation();
     const double seconds = static_cast<double>(k.t_ns - session.t_begin_ns) * 1e-9;
-    const double sigma_m = std::sqrt(k.covariance.topLeftCorner<3, 3>().trace());
     Feature feature;
     feature.points.emplace_back(p.x(), p.y(), p.z(), seconds);
     feature.values = {static_cast<std::int64_t>(i),
@@ -71,7 +70,7 @@ VectorLayer pose_layer(const Map& map) {
                       q.y(),
                       q.z(),
                       q.w(),
-                      sigma_m,
+                      std::sqrt(k.covariance.topLeftCorner<3, 3>().trace()),
                       std::sqrt(k.covariance(5, 5)),
                       k.travelled_m,
                       std::int64_t{k.reversing ? 1 : 0},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "base/error.hpp"
@@ -30,7 +31,7 @@ std::string_view view(const Bytes& bytes) {
 void bind_value(SqlStatement& statement, int parameter, const FieldValue& value) {
   if (const auto* number = std::get_if<std::int64_t>(&value)) {
     statement.bind(parameter, *number);
-  } else if (const auto* real = std::get_if<double>(&value)) {
+  } else if (const auto* real = std::get_if<double>(&value); real && !std::isnan(*real)) {
     statement.bind(parameter, *real);
   } else if (const auto* text = std::get_if<std::string>(&value)) {
     statement.bind_text(parameter, *text);

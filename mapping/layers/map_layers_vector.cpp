@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -76,7 +77,7 @@ std::unique_ptr<OGRGeometry> to_geometry(GeometryType type,
 void set_value(OGRFeature& feature, int field, const FieldValue& value) {
   if (const auto* number = std::get_if<std::int64_t>(&value)) {
     feature.SetField(field, static_cast<GIntBig>(*number));
-  } else if (const auto* real = std::get_if<double>(&value)) {
+  } else if (const auto* real = std::get_if<double>(&value); real && !std::isnan(*real)) {
     feature.SetField(field, *real);
   } else if (const auto* text = std::get_if<std::string>(&value)) {
     feature.SetField(field, text->c_str());

@@ -27,4 +27,21 @@ void BundleSystem::solve_columns(BlockCholesky::Panel& poses, BlockCholesky::Pan
   });
 }
 
+void BundleSystem::solve_reduced(BlockCholesky::Panel& poses, BlockCholesky::Panel& scales) const {
+  S_.solve(poses, options_.num_threads);
+  if (scale_count_ == 0) return;
+  scales = scale_inverse_ * (scales - border_.transpose() * poses);
+  poses -= X_ * scales;
+}
+
+Matrix6d BundleSystem::shared_covariance(int a, int b) {
+  bool transposed = false;
+  const Matrix6d& stored = S_.block(a, b, transposed);
+  Matrix6d shared = transposed ? Matrix6d(stored.transpose()) : stored;
+  if (scale_count_ > 0)
+    shared += X_.middleRows<6>(row_of(at(a))) * scale_inverse_ *
+              X_.middleRows<6>(row_of(at(b))).transpose();
+  return shared;
+}
+
 }  // namespace roadbook

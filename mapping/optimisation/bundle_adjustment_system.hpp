@@ -44,12 +44,18 @@ class BundleSystem {
   /// of the last `solve`. Each column is one right-hand side: `poses` has six rows for each free
   /// pose, `points` three rows for each point. Free scales are held fixed.
   void solve_columns(BlockCholesky::Panel& poses, BlockCholesky::Panel& points) const;
+  /// The same for right-hand sides of poses and free scales from which the points are already
+  /// eliminated; free scales move. `scales` has a row for each free scale.
+  void solve_reduced(BlockCholesky::Panel& poses, BlockCholesky::Panel& scales) const;
   /// Largest absolute entry of the gradient.
   [[nodiscard]] double gradient_norm() const;
 
   /// Marginal covariances of the free poses and of the scales. Call solve(0, ...) first; its factor
   /// is overwritten.
   [[nodiscard]] std::vector<Matrix6d> pose_covariances(Eigen::MatrixXd& scale_covariance);
+  /// Block of the covariance between free poses `a` and `b` that see a common point. Call
+  /// pose_covariances first.
+  [[nodiscard]] Matrix6d shared_covariance(int a, int b);
   /// Information of a point given the poses.
   [[nodiscard]] const Eigen::Matrix3d& point_information(std::size_t point) const {
     return V_[point];

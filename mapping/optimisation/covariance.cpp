@@ -2,14 +2,15 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 
 #include "base/error.hpp"
+#include "mapping/known_covariance.hpp"
 #include "mapping/optimisation/bundle_adjustment_check.hpp"
 #include "mapping/optimisation/bundle_adjustment_system.hpp"
 #include "mapping/optimisation/bundle_adjustment_terms.hpp"
 
 namespace roadbook {
-namespace {
 
 std::vector<std::uint8_t> points_with_two(const BundleProblem& problem,
                                           const std::vector<std::uint8_t>& active) {
@@ -21,8 +22,6 @@ std::vector<std::uint8_t> points_with_two(const BundleProblem& problem,
   return kept;
 }
 
-}  // namespace
-
 BundleCovariance bundle_covariance(const BundleProblem& problem,
                                    const std::vector<std::uint8_t>& inlier,
                                    const BundleOptions& options) {
@@ -33,9 +32,9 @@ BundleCovariance bundle_covariance(const BundleProblem& problem,
   ROADBOOK_ASSERT(active.size() == problem.observations.size());
 
   BundleCovariance result;
-  result.poses.assign(problem.poses.size(), Matrix6d::Zero());
-  result.points.assign(problem.points.size(), Eigen::Matrix3d::Zero());
-  result.scale_sigmas.assign(problem.scales.size(), 0.0);
+  result.poses.assign(problem.poses.size(), unknown_covariance<Matrix6d>());
+  result.points.assign(problem.points.size(), unknown_covariance<Eigen::Matrix3d>());
+  result.scale_sigmas.assign(problem.scales.size(), std::numeric_limits<double>::quiet_NaN());
   const BundleLayout layout(problem, options, active, points_with_two(problem, active));
   BundleSystem system(problem, layout, options);
   system.linearise(state_of(problem));
@@ -52,10 +51,13 @@ BundleCovariance bundle_covariance(const BundleProblem& problem,
   }
   Eigen::MatrixXd scales;
   const std::vector<Matrix6d> poses = system.pose_covariances(scales);
+  for (std::size_t i = 0; i < problem.poses.size(); ++i)
+    if (layout.variable[i] < 0) result.poses[i].setZero();
   for (std::size_t v = 0; v < poses.size(); ++v)
     result.poses[static_cast<std::size_t>(layout.pose_of[v])] = poses[v];
   Eigen::Index column = 0;
   for (std::size_t s = 0; s < problem.scales.size(); ++s) {
+    result.scale_sigmas[s] = 0.0;
     if (problem.scales[s].fixed) continue;
     result.scale_sigmas[s] = std::sqrt(scales(column, column));
     ++column;

@@ -201,14 +201,18 @@ Adjusted adjust(const MappingInput& input,
       adjusted.T_map_vehicle[k] = adjusted.stage.problem.poses[k].T_map_vehicle;
   }
   if (options.covariances)
-    adjusted.covariance =
-        bundle_covariance(adjusted.stage.problem, adjusted.result.inlier, stage_options.bundle);
+    adjusted.covariance = cluster_covariance(adjusted.stage.problem, adjusted.result.inlier,
+                                             relaxed.component, stage_options.bundle);
   triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
   // Adjusted positions are better than triangulated ones.
   for (std::size_t p = 0; p < adjusted.stage.problem.points.size(); ++p)
     if (adjusted.result.point_kept[p])
       adjusted.tracks[static_cast<std::size_t>(adjusted.stage.track_of_point[p])].p_map =
           adjusted.stage.problem.points[p].p_map;
+  if (options.covariances)
+    adjusted.landmark_covariance =
+        landmark_covariances(input, adjusted.T_map_vehicle, adjusted.tracks,
+                             options.bundle.feature_sigma_px, options.triangulation);
   return adjusted;
 }
 
@@ -220,11 +224,6 @@ Map map_of_stages(const MappingInput& input,
   const auto& keyframes = input.odometry.keyframes;
   for (const auto& loop : loops) map.loops.push_back(loop.edge);
 
-  std::vector<int> point_of_track(adjusted.tracks.size(), -1);
-  for (std::size_t p = 0; p < adjusted.stage.track_of_point.size(); ++p)
-    if (adjusted.result.point_kept[p])
-      point_of_track[static_cast<std::size_t>(adjusted.stage.track_of_point[p])] =
-          static_cast<int>(p);
   const auto views =
       view_from_above(input, adjusted.T_map_vehicle, adjusted.tracks, options.bundle.ground);
   const double level = ground_level(views, options.bundle.ground);
@@ -240,8 +239,8 @@ Map map_of_stages(const MappingInput& input,
                               .features[static_cast<std::size_t>(first.camera)]
                               .descriptors[static_cast<std::size_t>(first.feature)];
     landmark.ground = on_ground(views[t], level, options.bundle.ground);
-    if (point_of_track[t] >= 0 && adjusted.covariance.usable)
-      landmark.covariance = adjusted.covariance.points[static_cast<std::size_t>(point_of_track[t])];
+    if (!adjusted.landmark_covariance.of_track.empty())
+      landmark.covariance = adjusted.landmark_covariance.of_track[t];
     const int id = static_cast<int>(map.landmarks.size());
     map.landmarks.push_back(landmark);
     for (const auto& view : track.views) {

@@ -6,7 +6,8 @@
 #include "drive/drive.hpp"
 #include "mapping/joined_tracks.hpp"
 #include "mapping/optimisation/bundle_adjustment.hpp"
-#include "mapping/optimisation/covariance.hpp"
+#include "mapping/optimisation/cluster_covariance.hpp"
+#include "mapping/pipeline/landmark_covariance.hpp"
 #include "mapping/pipeline/map_options.hpp"
 
 namespace roadbook {
@@ -47,8 +48,9 @@ struct Adjusted {
   std::vector<JoinedTrack> tracks;
   BundleStage stage;  ///< the adjusted problem
   BundleResult result;
-  EqualRowsUsed rows;  ///< used rows of MapOptions::equal_rows
-  BundleCovariance covariance;
+  EqualRowsUsed rows;                       ///< used rows of MapOptions::equal_rows
+  ClusterCovariance covariance;             ///< of the poses and of the wheels' factors
+  LandmarkCovariances landmark_covariance;  ///< of `tracks`; empty if not wanted
 };
 
 /// Finds landmarks again in other passes, joins and triangulates tracks, and adjusts poses and

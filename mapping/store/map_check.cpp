@@ -49,6 +49,18 @@ class Findings {
   void finite(const std::string& what, std::size_t i, const char* field, double value) {
     if (!std::isfinite(value)) add(what, i, field, std::to_string(value), "a finite number");
   }
+  /// From 0, or NaN: unknown.
+  void sigma(const std::string& what, std::size_t i, const char* field, double value) {
+    if (value < 0.0 || std::isinf(value)) add(what, i, field, std::to_string(value), "at least 0");
+  }
+  /// All numbers are finite, or all are NaN: unknown.
+  template <typename Derived>
+  void covariance(const std::string& what, std::size_t i, const Eigen::MatrixBase<Derived>& m) {
+    if (m.array().isNaN().all()) return;
+    finite(what, i, "covariance", m);
+    if (!(m.diagonal().minCoeff() >= 0.0))
+      add(what, i, "covariance", "a negative variance", "variances from 0");
+  }
   void pose(const std::string& what,
             std::size_t i,
             const char* field,
@@ -72,8 +84,8 @@ void check_sessions(const Map& map, Findings& findings) {
   for (std::size_t i = 0; i < map.sessions.size() && !findings.full(); ++i) {
     const Session& s = map.sessions[i];
     findings.finite("sessions", i, "wheel_scale", s.wheel_scale);
-    findings.finite("sessions", i, "wheel_scale_sigma", s.wheel_scale_sigma);
-    findings.finite("sessions", i, "scale_sigma", s.scale_sigma);
+    findings.sigma("sessions", i, "wheel_scale_sigma", s.wheel_scale_sigma);
+    findings.sigma("sessions", i, "scale_sigma", s.scale_sigma);
     if (s.t_end_ns < s.t_begin_ns)
       findings.add("sessions", i, "t_end_ns", std::to_string(s.t_end_ns), "at least t_begin_ns");
     for (const MountedCamera& camera : s.rig.cameras) {
@@ -92,10 +104,8 @@ void check_keyframes(const Map& map, Findings& findings) {
     if (findings.index("keyframes", i, "map_frame", k.map_frame, map.map_frames.size()))
       used[static_cast<std::size_t>(k.map_frame)] = true;
     findings.pose("keyframes", i, "T_frame_vehicle", k.T_frame_vehicle);
-    findings.finite("keyframes", i, "covariance", k.covariance);
     findings.finite("keyframes", i, "travelled_m", k.travelled_m);
-    if (!(k.covariance.diagonal().minCoeff() >= 0.0))
-      findings.add("keyframes", i, "covariance", "a negative variance", "variances from 0");
+    findings.covariance("keyframes", i, k.covariance);
     if (i == 0) continue;
     const Keyframe& before = map.keyframes[i - 1];
     if (k.session < before.session || (k.session == before.session && k.t_ns <= before.t_ns))
@@ -118,9 +128,7 @@ void check_landmarks(const Map& map, Findings& findings) {
     const Landmark& l = map.landmarks[i];
     findings.index("landmarks", i, "map_frame", l.map_frame, map.map_frames.size());
     findings.finite("landmarks", i, "p_frame", l.p_frame);
-    findings.finite("landmarks", i, "covariance", l.covariance);
-    if (!(l.covariance.diagonal().minCoeff() >= 0.0))
-      findings.add("landmarks", i, "covariance", "a negative variance", "variances from 0");
+    findings.covariance("landmarks", i, l.covariance);
   }
 }
 

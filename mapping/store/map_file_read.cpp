@@ -9,6 +9,8 @@
 namespace roadbook {
 namespace {
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 /// Reads the rows of one table in the order of their ids; checks each value.
 class Rows {
  public:
@@ -55,6 +57,11 @@ class Rows {
   void matrix(int column, Matrix& m) const {
     if (!unpack_matrix(blob(column), m)) fail_size(column);
   }
+  template <typename Matrix>
+  void covariance(int column, Matrix& m) const {
+    m = unknown_covariance<Matrix>();
+    if (statement_.type(column) != SQLITE_NULL) matrix(column, m);
+  }
   [[nodiscard]] Eigen::Isometry3d pose(int column) const {
     Eigen::Matrix<double, 3, 4> m;
     matrix(column, m);
@@ -86,11 +93,11 @@ void read_sessions(const SqlDatabase& database, Map& map) {
     s.name = rows.text(1);
     s.drive_digest = rows.text(2);
     s.wheel_scale = rows.real(3);
-    s.wheel_scale_sigma = rows.real(4);
+    s.wheel_scale_sigma = rows.real_or_null(4).value_or(kUnknown);
     const auto source = scale_source_from(rows.text(5));
     if (!source) rows.fail(5, rows.text(5), "wheels, camera_height or free");
     s.scale_source = *source;
-    s.scale_sigma = rows.real(6);
+    s.scale_sigma = rows.real_or_null(6).value_or(kUnknown);
     s.t_begin_ns = rows.int64(7);
     s.t_end_ns = rows.int64(8);
     map.sessions.push_back(std::move(s));
@@ -150,6 +157,30 @@ void read_vehicles(const SqlDatabase& database, Map& map) {
   }
 }
 
+// Earlier programs wrote zero for unknown; their tables do not allow NULL.
+bool zero_means_unknown(const SqlDatabase& database, const std::string& table) {
+  return database.value("SELECT \"notnull\" FROM pragma_table_info('" + table +
+                        "') WHERE name = 'covariance'") == "1";
+}
+
+// The first keyframe is exact if it holds the gauge of others that are known.
+void forget_zeros(Map& map) {
+  for (Session& s : map.sessions)
+    for (double* sigma : {&s.wheel_scale_sigma, &s.scale_sigma})
+      if (*sigma == 0.0) *sigma = kUnknown;
+  bool any = false;
+  for (Keyframe& k : map.keyframes) {
+    if (!k.covariance.isZero(0.0))
+      any = true;
+    else if (&k != &map.keyframes.front())
+      k.covariance = unknown_covariance<Matrix6d>();
+  }
+  if (!any && !map.keyframes.empty())
+    map.keyframes.front().covariance = unknown_covariance<Matrix6d>();
+  for (Landmark& l : map.landmarks)
+    if (l.covariance.isZero(0.0)) l.covariance = unknown_covariance<Eigen::Matrix3d>();
+}
+
 void read_poses(const SqlDatabase& database, Map& map) {
   for (Rows rows(database, "map_frames"); rows.next();) {
     rows.require_id();
@@ -163,7 +194,7 @@ void read_poses(const SqlDatabase& database, Map& map) {
     k.drive_frame = rows.integer(3);
     k.map_frame = rows.index(4, map.map_frames.size());
     k.T_frame_vehicle = rows.pose(5);
-    rows.matrix(6, k.covariance);
+    rows.covariance(6, k.covariance);
     k.travelled_m = rows.real(7);
     k.reversing = rows.boolean(8);
     k.after_gap = rows.boolean(9);
@@ -179,7 +210,7 @@ void read_landmarks(const SqlDatabase& database, Map& map) {
     Landmark l;
     l.map_frame = rows.index(1, map.map_frames.size());
     l.p_frame = {rows.real(2), rows.real(3), rows.real(4)};
-    rows.matrix(5, l.covariance);
+    rows.covariance(5, l.covariance);
     l.ground = rows.boolean(6);
     map.landmarks.push_back(l);
   }
@@ -242,6 +273,7 @@ Map read_map_tables(const SqlDatabase& database) {
   read_vehicles(database, map);
   read_poses(database, map);
   read_landmarks(database, map);
+  if (zero_means_unknown(database, "keyframes")) forget_zeros(map);
   read_observations(database, map);
   read_loops(database, map);
   return map;

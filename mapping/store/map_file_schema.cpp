@@ -16,8 +16,8 @@ struct TableSql {
 constexpr std::array<TableSql, 12> kTables{{
     {"sessions",
      "id INTEGER PRIMARY KEY, name TEXT NOT NULL, drive_digest TEXT NOT NULL, "
-     "wheel_scale REAL NOT NULL, wheel_scale_sigma REAL NOT NULL, scale_source TEXT NOT NULL, "
-     "scale_sigma REAL NOT NULL, t_begin_ns INTEGER NOT NULL, t_end_ns INTEGER NOT NULL"},
+     "wheel_scale REAL NOT NULL, wheel_scale_sigma REAL, scale_source TEXT NOT NULL, "
+     "scale_sigma REAL, t_begin_ns INTEGER NOT NULL, t_end_ns INTEGER NOT NULL"},
     {"session_places", "session INTEGER PRIMARY KEY, drive_path TEXT NOT NULL"},
     {"cameras",
      "id INTEGER PRIMARY KEY, session INTEGER NOT NULL, camera INTEGER NOT NULL, "
@@ -37,11 +37,11 @@ constexpr std::array<TableSql, 12> kTables{{
     {"keyframes",
      "id INTEGER PRIMARY KEY, session INTEGER NOT NULL, t_ns INTEGER NOT NULL, "
      "drive_frame INTEGER NOT NULL, map_frame INTEGER NOT NULL, T_frame_vehicle BLOB NOT NULL, "
-     "covariance BLOB NOT NULL, travelled_m REAL NOT NULL, reversing INTEGER NOT NULL, "
+     "covariance BLOB, travelled_m REAL NOT NULL, reversing INTEGER NOT NULL, "
      "after_gap INTEGER NOT NULL, piece INTEGER NOT NULL"},
     {"landmarks",
      "id INTEGER PRIMARY KEY, map_frame INTEGER NOT NULL, x REAL NOT NULL, y REAL NOT NULL, "
-     "z REAL NOT NULL, covariance BLOB NOT NULL, ground INTEGER NOT NULL"},
+     "z REAL NOT NULL, covariance BLOB, ground INTEGER NOT NULL"},
     {"descriptors", "landmark INTEGER PRIMARY KEY, data BLOB NOT NULL"},
     {"observations",
      "id INTEGER PRIMARY KEY, keyframe INTEGER NOT NULL, camera INTEGER NOT NULL, "

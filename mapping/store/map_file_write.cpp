@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -9,14 +10,23 @@
 namespace roadbook {
 namespace {
 
+// NaN, which is unknown, as NULL.
+void bind_or_null(SqlStatement& statement, int parameter, double value) {
+  if (std::isnan(value))
+    statement.bind_null(parameter);
+  else
+    statement.bind(parameter, value);
+}
+
 void write_sessions(const SqlDatabase& database, const std::vector<Session>& sessions) {
   SqlStatement session = database.prepare("INSERT INTO sessions VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqlStatement place = database.prepare("INSERT INTO session_places VALUES(?, ?)");
   std::int64_t id = 0;
   for (const Session& s : sessions) {
     session.bind(1, id).bind_text(2, s.name).bind_text(3, s.drive_digest);
-    session.bind(4, s.wheel_scale).bind(5, s.wheel_scale_sigma);
-    session.bind_text(6, scale_source_name(s.scale_source)).bind(7, s.scale_sigma);
+    session.bind(4, s.wheel_scale).bind_text(6, scale_source_name(s.scale_source));
+    bind_or_null(session, 5, s.wheel_scale_sigma);
+    bind_or_null(session, 7, s.scale_sigma);
     session.bind(8, s.t_begin_ns).bind(9, s.t_end_ns).run();
     place.bind(1, id).bind_text(2, s.drive_path).run();
     ++id;
@@ -70,6 +80,19 @@ void write_vehicles(const SqlDatabase& database, const std::vector<Session>& ses
   }
 }
 
+// Unknown is NULL. Returns the bytes, which must live until the statement has run.
+template <typename Matrix>
+[[nodiscard]] std::string bind_covariance(SqlStatement& statement,
+                                          int parameter,
+                                          const Matrix& covariance) {
+  std::string bytes = is_known(covariance) ? pack_matrix(covariance) : std::string();
+  if (bytes.empty())
+    statement.bind_null(parameter);
+  else
+    statement.bind_blob(parameter, bytes);
+  return bytes;
+}
+
 void write_poses(const SqlDatabase& database, const Map& map) {
   SqlStatement frame = database.prepare("INSERT INTO map_frames VALUES(?, ?)");
   for (std::size_t i = 0; i < map.map_frames.size(); ++i) {
@@ -81,10 +104,10 @@ void write_poses(const SqlDatabase& database, const Map& map) {
   for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
     const Keyframe& k = map.keyframes[i];
     const std::string pose = pack_pose(k.T_frame_vehicle);
-    const std::string covariance = pack_matrix(k.covariance);
     keyframe.bind(1, static_cast<std::int64_t>(i)).bind(2, k.session).bind(3, k.t_ns);
     keyframe.bind(4, k.drive_frame).bind(5, k.map_frame).bind_blob(6, pose);
-    keyframe.bind_blob(7, covariance).bind(8, k.travelled_m);
+    const std::string covariance = bind_covariance(keyframe, 7, k.covariance);
+    keyframe.bind(8, k.travelled_m);
     keyframe.bind(9, k.reversing ? 1 : 0).bind(10, k.after_gap ? 1 : 0);
     keyframe.bind(11, k.piece).run();
   }
@@ -96,11 +119,11 @@ void write_landmarks(const SqlDatabase& database, const std::vector<Landmark>& l
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     const Landmark& l = landmarks[i];
     const auto id = static_cast<std::int64_t>(i);
-    const std::string covariance = pack_matrix(l.covariance);
     std::string data;
     for (const std::uint8_t byte : l.descriptor) pack(data, byte);
     landmark.bind(1, id).bind(2, l.map_frame).bind(3, l.p_frame.x()).bind(4, l.p_frame.y());
-    landmark.bind(5, l.p_frame.z()).bind_blob(6, covariance).bind(7, l.ground ? 1 : 0).run();
+    const std::string covariance = bind_covariance(landmark, 6, l.covariance);
+    landmark.bind(5, l.p_frame.z()).bind(7, l.ground ? 1 : 0).run();
     descriptor.bind(1, id).bind_blob(2, data).run();
   }
 }

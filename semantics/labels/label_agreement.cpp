@@ -12,7 +12,7 @@ LabelAgreement agreement_of(const Map& map, const std::vector<Label>& labels) {
   std::vector<double> metres;
   for (const Label& label : labels) {
     const auto own = seen_in_map(map, label);
-    if (!own || label.state != LabelState::kActive) continue;
+    if (!own || !is_known(own->covariance) || label.state != LabelState::kActive) continue;
     for (const LabelSighting& sighting : label.sightings) {
       // The sighting as a separate label, anchored to the other image.
       Label other;
@@ -20,7 +20,7 @@ LabelAgreement agreement_of(const Map& map, const std::vector<Label>& labels) {
       other.sigma_m = sighting.sigma_m;
       other.T_vehicle_label.translation() = sighting.middle_vehicle;
       const auto place = seen_in_map(map, other);
-      if (!place) continue;
+      if (!place || !is_known(place->covariance)) continue;
       LabelDisagreement found{label.id, sighting.anchor, place->middle - own->middle, 0.0};
       const Eigen::Matrix2d covariance = own->covariance + place->covariance;
       found.sigmas =

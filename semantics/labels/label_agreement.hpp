@@ -29,6 +29,7 @@ struct LabelAgreement {
   [[nodiscard]] bool contradicts() const { return chance < 1e-3; }
 };
 
+/// Sightings whose covariance the map does not know are left out: they prove nothing.
 [[nodiscard]] LabelAgreement agreement_of(const Map& map, const std::vector<Label>& labels);
 
 }  // namespace roadbook

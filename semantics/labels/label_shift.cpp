@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "semantics/labels/label_classes.hpp"
 
@@ -20,6 +21,10 @@ double sigmas_of(const Eigen::Vector2d& shift, const Eigen::Matrix2d& covariance
 
 LabelShift shift_from(const Label& label, const LabelSeen& seen, const Eigen::Vector2d& now) {
   LabelShift shift{label, seen.middle, now};
+  if (!is_known(seen.covariance)) {
+    shift.sigma_m = shift.sigmas = std::numeric_limits<double>::quiet_NaN();
+    return shift;
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(seen.covariance);
   shift.sigma_m = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
   shift.sigmas = sigmas_of(shift.after - shift.before, seen.covariance);

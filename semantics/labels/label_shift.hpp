@@ -19,8 +19,9 @@ struct LabelShift {
   /// in `shifts_since_seen`, because Label::seen stores only x and y.
   std::optional<double> raised_m{};
   std::optional<double> turned_rad{};
-  double sigma_m = 0.0;  ///< of the position before, in its least certain direction
-  /// Mahalanobis distance of the shift, with the covariance of the position before.
+  /// Of the position before, in its least certain direction; NaN: unknown.
+  double sigma_m = 0.0;
+  /// Mahalanobis distance of the shift, with the covariance of the position before; NaN: unknown.
   double sigmas = 0.0;
 
   /// Horizontal length of the shift.

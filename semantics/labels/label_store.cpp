@@ -75,7 +75,9 @@ struct LabelStore::Impl {
     label.t_ns = wall_clock_ns();
     // Undo and redo do not show the label to a person. The label keeps the place where a person saw
     // it before.
-    if (const auto seen = seen_in_map(map, label); seen && undoes == 0) label.seen = seen;
+    // Where the map does not know its accuracy, no later shift of the label can be judged.
+    if (const auto seen = seen_in_map(map, label); seen && undoes == 0)
+      label.seen = is_known(seen->covariance) ? seen : std::nullopt;
     StoredEvent stored{{static_cast<std::int64_t>(replay.events().size()) + 1, action,
                         std::move(label), undoes, together},
                        request};

@@ -202,7 +202,7 @@ std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label) 
 
 std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label) {
   const auto vehicle = vehicle_of(map, label.anchor);
-  if (!vehicle || !is_on_ground(label)) return std::nullopt;
+  if (!vehicle || !is_on_ground(label) || !is_known(vehicle->covariance)) return std::nullopt;
   return covariance_of_point(*vehicle, middle_of(label)) +
          label.sigma_m * label.sigma_m * Eigen::Matrix2d::Identity();
 }
@@ -218,7 +218,8 @@ std::optional<LabelSeen> seen_in_map(const Map& map, const Label& label) {
   const auto vehicle = vehicle_of(map, label.anchor);
   if (!vehicle || !is_on_ground(label)) return std::nullopt;
   const Eigen::Vector3d middle = vehicle->T_map_vehicle * middle_of(label);
-  return LabelSeen{middle.head<2>(), *covariance_in_map(map, label),
+  return LabelSeen{middle.head<2>(),
+                   covariance_in_map(map, label).value_or(unknown_covariance<Eigen::Matrix2d>()),
                    static_cast<int>(map.sessions.size())};
 }
 

@@ -145,14 +145,15 @@ struct Label {
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label);
 
 /// Covariance of the label's middle, x and y in the map frame [m^2]: covariance of the pose
-/// (relative to the map's first keyframe) plus that of the drawing.
+/// (relative to the first keyframe of its piece) plus that of the drawing. Empty if the map has no
+/// pose for the anchor or does not know its covariance.
 [[nodiscard]] std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label);
 
 /// Standard deviation of the middle in its least certain direction [m].
 [[nodiscard]] std::optional<double> sigma_in_map(const Map& map, const Label& label);
 
-/// Current position, covariance and number of sessions, to be stored as Label::seen; empty if the
-/// label has no position.
+/// Current position, covariance (NaN: unknown) and number of sessions, to be stored as Label::seen
+/// if all are known; empty if the label has no position.
 [[nodiscard]] std::optional<LabelSeen> seen_in_map(const Map& map, const Label& label);
 
 /// Converts a box or polygon in map coordinates to a label of `anchor`, on the ground plane of the

@@ -211,7 +211,7 @@ std::vector<GroundPoint> ground_points(const Map& map, const GroundModelOptions&
         points.push_back({T_map_vehicle * Eigen::Vector3d(x, y, 0.0), options.sigma_wheel_m});
   }
   for (const Landmark& landmark : map.landmarks) {
-    if (!landmark.ground) continue;
+    if (!landmark.ground || !is_known(landmark.covariance)) continue;
     // Conservative: the trace is an upper bound of the height's variance in any frame.
     const double variance = std::max(0.0, landmark.covariance.trace());
     points.push_back(

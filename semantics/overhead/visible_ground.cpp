@@ -27,7 +27,9 @@ std::vector<Eigen::Vector2d> standing_cells(const Map& map,
   std::map<GridCell<2>, int> counts;
   for (const Landmark& landmark : map.landmarks) {
     if (landmark.ground) continue;
-    if (landmark.covariance.trace() > options.max_sigma_m * options.max_sigma_m) continue;
+    if (!is_known(landmark.covariance) ||
+        landmark.covariance.trace() > options.max_sigma_m * options.max_sigma_m)
+      continue;
     const Eigen::Vector3d p = map.p_map(landmark);
     const auto z = ground.height(p.x(), p.y());
     if (!z || p.z() - *z < options.lowest_m || p.z() - *z > options.highest_m) continue;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 
 #include "base/error.hpp"
 #include "exchange/layers/feature_column.hpp"
@@ -65,7 +66,8 @@ Feature feature_of(const std::string& session,
   const Eigen::Matrix2d C =
       R * covariance_of(d) * R.transpose() + covariance_of_point(vehicle, feet);
   const double sigma_m =
-      std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(C).eigenvalues()[1]);
+      is_known(C) ? std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(C).eigenvalues()[1])
+                  : std::numeric_limits<double>::quiet_NaN();
   Feature feature;
   feature.points.emplace_back(p.x(), p.y(), p.z(), 0.0);
   feature.values = {session, d.t_ns,  utc_text(d.t_ns), d.probability,

@@ -1,0 +1,159 @@
+#include "mapping/optimisation/cluster_covariance.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "base/require_option.hpp"
+#include "mapping/known_covariance.hpp"
+#include "mapping/optimisation/bundle_adjustment_check.hpp"
+#include "mapping/optimisation/cluster_draws.hpp"
+#include "mapping/optimisation/cluster_scores.hpp"
+#include "mapping/optimisation/effective_clusters.hpp"
+#include "mapping/union_find.hpp"
+
+namespace roadbook {
+namespace {
+
+// Poses that landmarks or motions tie together.
+std::vector<int> tied_poses(const BundleProblem& problem, const BundleLayout& layout) {
+  UnionFind sets(problem.poses.size());
+  for (std::size_t p = 0; p + 1 < layout.term_begin.size(); ++p) {
+    if (layout.point_free[p] == 0) continue;
+    for (std::size_t t = layout.term_begin[p] + 1; t < layout.term_begin[p + 1]; ++t)
+      sets.join(layout.terms[t].pose, layout.terms[t - 1].pose);
+  }
+  for (const MotionConstraint& m : problem.motions) sets.join(m.from, m.to);
+  return sets.numbers();
+}
+
+// Fixes the first pose of each piece. A set of poses that is not tied to it is fixed too, so that
+// the system can be solved, and its poses are `lost`.
+std::vector<std::uint8_t> fix_gauges(const std::vector<int>& tied,
+                                     const std::vector<int>& piece,
+                                     BundleProblem& problem) {
+  std::map<int, int> gauge;  // of each piece: the set of its first pose
+  std::map<int, bool> held;  // sets with a fixed pose
+  std::vector<std::uint8_t> lost(problem.poses.size(), 0);
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    if (gauge.emplace(piece[i], tied[i]).second) {
+      problem.poses[i].fixed = true;
+      held[tied[i]] = true;
+    }
+    lost[i] = gauge.at(piece[i]) != tied[i];
+    if (lost[i] && !held[tied[i]]) problem.poses[i].fixed = held[tied[i]] = true;
+  }
+  return lost;
+}
+
+double chi2_of(const BundleProblem& problem,
+               const BundleLayout& layout,
+               const BundleOptions& options,
+               const BundleState& state) {
+  double sum = 0.0;
+  double freedom = -3.0 * static_cast<double>(layout.pose_of.size());  // motions give the others
+  for (std::size_t p = 0; p < problem.points.size(); ++p) {
+    const PointTerms point = point_terms(problem, layout, options, state, p);
+    if (point.terms.empty()) continue;
+    freedom -= 3.0;
+    for (const PointTerms::Term& t : point.terms) {
+      if (t.camera == BundleTerm::kGround) continue;
+      sum += t.r.squaredNorm();
+      freedom += 2.0;
+    }
+  }
+  return freedom > 1.0 ? sum / freedom : 1.0;
+}
+
+std::vector<double> leverages(const BundleProblem& problem,
+                              const BundleLayout& layout,
+                              const BundleOptions& options,
+                              const BundleState& state,
+                              BundleSystem& system) {
+  std::vector<double> leverage(problem.points.size(), 0.0);
+  parallel_for_small(leverage.size(), options.num_threads, [&](std::size_t p) {
+    const PointTerms point = point_terms(problem, layout, options, state, p);
+    if (!point.terms.empty()) leverage[p] = leverage_of(point, system);
+  });
+  return leverage;
+}
+
+// Covariance of a normal distribution whose 95 % region is as large as Hotelling's for six
+// dimensions and that many degrees of freedom: the ratio of both is near n / (n - 9).
+double few_clusters_factor(double clusters) {
+  constexpr double kMost = 2.8;
+  return clusters > 14.0 ? clusters / (clusters - 9.0) : kMost;
+}
+
+}  // namespace
+
+void ClusterOptions::check() const {
+  require_option(cases >= 64 && cases % 64 == 0, "cases", cases, "a multiple of 64");
+  require_option(cell_m > 0.0, "cell_m", cell_m, "above 0");
+  require_option(sampled_poses >= 1, "sampled_poses", sampled_poses, "at least 1");
+}
+
+ClusterCovariance cluster_covariance(const BundleProblem& given,
+                                     const std::vector<std::uint8_t>& inlier,
+                                     const std::vector<int>& piece,
+                                     const BundleOptions& options,
+                                     const ClusterOptions& clusters) {
+  options.check();
+  clusters.check();
+  check_bundle(given);
+  std::vector<std::uint8_t> active = inlier;
+  if (active.empty()) active.assign(given.observations.size(), 1);
+  ROADBOOK_ASSERT(active.size() == given.observations.size());
+  ROADBOOK_ASSERT(piece.size() == given.poses.size());
+
+  ClusterCovariance result;
+  result.poses.assign(given.poses.size(), unknown_covariance<Matrix6d>());
+  result.scale_sigmas.assign(given.scales.size(), std::numeric_limits<double>::quiet_NaN());
+  const std::vector<std::uint8_t> kept = points_with_two(given, active);
+  BundleProblem problem = given;
+  const std::vector<std::uint8_t> lost =
+      fix_gauges(tied_poses(given, BundleLayout(given, options, active, kept)), piece, problem);
+  const BundleLayout layout(problem, options, active, kept);
+  const BundleState state = state_of(problem);
+  BundleSystem system(problem, layout, options);
+  system.linearise(state);
+  BundleStep step;
+  Eigen::MatrixXd scales;
+  if (!system.solve(0.0, step)) {
+    result.message = "the normal equations are singular: the gauge is not fixed";
+    return result;
+  }
+  static_cast<void>(system.pose_covariances(scales));
+  const ClusterData data{problem,
+                         layout,
+                         options,
+                         clusters,
+                         state,
+                         leverages(problem, layout, options, state, system),
+                         chi2_of(problem, layout, options, state)};
+  if (!system.solve(0.0, step)) return result;  // the inverse took the factor's place
+  DrawnCovariance drawn = drawn_covariance(data, system);
+  result.effective_clusters = effective_clusters(data, system, drawn.poses);
+  const double factor = few_clusters_factor(result.effective_clusters);
+  for (std::size_t i = 0; i < given.poses.size(); ++i) {
+    if (lost[i] != 0) continue;
+    const int v = layout.variable[i];
+    result.poses[i] = v < 0 ? Matrix6d(Matrix6d::Zero()) : Matrix6d(factor * drawn.poses[at(v)]);
+    if (!result.poses[i].allFinite()) result.poses[i] = unknown_covariance<Matrix6d>();
+  }
+  std::size_t row = 0;
+  for (std::size_t s = 0; s < given.scales.size(); ++s)
+    result.scale_sigmas[s] =
+        given.scales[s].fixed ? 0.0 : std::sqrt(factor * drawn.scale_variances[row++]);
+  result.chi2 = data.chi2;
+  result.usable = true;
+  result.message = "relative to the first pose of each piece";
+  return result;
+}
+
+}  // namespace roadbook
