@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -165,6 +166,56 @@ TEST(MapFile, DigestIsOfTheContentAlone) {
       std::nextafter(map.keyframes[3].covariance(2, 2), std::numeric_limits<double>::max());
   save(folder / "c.gpkg", map);
   EXPECT_NE(map_digest(folder / "c.gpkg"), digest);
+}
+
+TEST(MapFile, UnknownIsNullAndReadAsUnknown) {
+  const Folder folder;
+  Map map = small_map(1);
+  map.keyframes[2].covariance = unknown_covariance<Matrix6d>();
+  map.landmarks[4].covariance = unknown_covariance<Eigen::Matrix3d>();
+  map.sessions[0].scale_sigma = std::numeric_limits<double>::quiet_NaN();
+  save(folder / "a.gpkg", map);
+  const SqlDatabase database(folder / "a.gpkg", SqlMode::kRead);
+  EXPECT_EQ(database.value("SELECT id FROM keyframes WHERE covariance IS NULL"), "2");
+  EXPECT_EQ(database.value("SELECT id FROM landmarks WHERE covariance IS NULL"), "4");
+  EXPECT_EQ(database.value("SELECT id FROM sessions WHERE scale_sigma IS NULL"), "0");
+  EXPECT_EQ(database.value("SELECT keyframe FROM poses WHERE sigma_m IS NULL"), "2");
+  EXPECT_EQ(database.value("SELECT landmark FROM landmark_points WHERE sigma_m IS NULL"), "4");
+  const Map read = load_map(folder / "a.gpkg");
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
+    EXPECT_EQ(is_known(read.keyframes[i].covariance), i != 2) << i;
+  EXPECT_FALSE(is_known(read.landmarks[4].covariance));
+  EXPECT_TRUE(std::isnan(read.sessions[0].scale_sigma));
+  EXPECT_TRUE(check_map(folder / "a.gpkg").problems.empty());
+}
+
+// The tables of earlier programs, which wrote zero for unknown and did not allow NULL.
+TEST(MapFile, ZerosOfEarlierProgramsAreUnknown) {
+  const Folder folder;
+  Map map = small_map(1);
+  for (const std::size_t i : {0U, 3U}) map.keyframes[i].covariance.setZero();
+  map.landmarks[1].covariance.setZero();
+  save(folder / "a.gpkg", map);
+  EXPECT_TRUE(is_known(load_map(folder / "a.gpkg").keyframes[3].covariance));  // exact today
+  {
+    const SqlDatabase database(folder / "a.gpkg", SqlMode::kReadWrite);
+    database.run("ALTER TABLE keyframes RENAME TO before");
+    database.run(
+        "CREATE TABLE keyframes(id INTEGER PRIMARY KEY, session INTEGER NOT NULL, "
+        "t_ns INTEGER NOT NULL, drive_frame INTEGER NOT NULL, map_frame INTEGER NOT NULL, "
+        "T_frame_vehicle BLOB NOT NULL, covariance BLOB NOT NULL, travelled_m REAL NOT NULL, "
+        "reversing INTEGER NOT NULL, after_gap INTEGER NOT NULL) STRICT");
+    database.run(
+        "INSERT INTO keyframes SELECT id, session, t_ns, drive_frame, map_frame, T_frame_vehicle, "
+        "covariance, travelled_m, reversing, after_gap FROM before");
+    database.run("DROP TABLE before");
+  }
+  seal_map_file(folder / "a.gpkg");
+  const Map read = load_map(folder / "a.gpkg");
+  EXPECT_EQ(read.keyframes[0].covariance, Matrix6d::Zero());  // the gauge of the others
+  EXPECT_FALSE(is_known(read.keyframes[3].covariance));
+  EXPECT_TRUE(is_known(read.keyframes[4].covariance));
+  EXPECT_FALSE(is_known(read.landmarks[1].covariance));
 }
 
 TEST(MapFile, ContradictionsAreRefusedBeforeTheOldMapIsTouched) {

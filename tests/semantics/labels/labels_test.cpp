@@ -75,6 +75,22 @@ TEST(Labels, TheirEllipseHoldsTheirTruthAsOftenAsItSays) {
   EXPECT_LE(inside, 970);
 }
 
+// Beside an unknown pose, and between it and a known one.
+TEST(Labels, AnUnknownCovarianceOfThePoseIsRefused) {
+  Map map = test::label_map(40);
+  const Label label = label_of_box(map, {0, map.keyframes[7].t_ns, 0}, {{3.0, 4.0}, 0.3, 5.0, 2.5});
+  ASSERT_TRUE(covariance_in_map(map, label));
+  map.keyframes[7].covariance = unknown_covariance<Matrix6d>();
+  EXPECT_FALSE(covariance_in_map(map, label));
+  EXPECT_FALSE(sigma_in_map(map, label));
+  EXPECT_TRUE(box_in_map(map, label));
+  ASSERT_TRUE(seen_in_map(map, label));
+  EXPECT_FALSE(is_known(seen_in_map(map, label)->covariance));
+  const std::int64_t between = (map.keyframes[6].t_ns + map.keyframes[7].t_ns) / 2;
+  ASSERT_TRUE(track_pose(map, 0, between));
+  EXPECT_FALSE(is_known(track_pose(map, 0, between)->covariance));
+}
+
 TEST(Labels, HangOnTheImageInWhichTheyAreMostCentral) {
   const Map map = test::label_map(30);
   const OrientedBox box{{3.0, 4.0}, 0.5 * std::numbers::pi, 5.0, 2.5};
