@@ -24,7 +24,7 @@ namespace roadbook {
 // x = H^-1 b (wild bootstrap in one linear step). Deterministic.
 
 struct ClusterOptions {
-  int cases = 192;  ///< draws; a multiple of 64
+  int cases = 128;  ///< draws; a multiple of 64
   double cell_m = 2.0;
   int sampled_poses = 12;   ///< of each piece, from which the effective clusters are counted
   std::uint64_t seed = 20;  ///< of the signs

@@ -27,7 +27,26 @@ Random stream(const ClusterData& data, const char* name, std::uint64_t index, in
   return {data.clusters.seed + 1000 * static_cast<std::uint64_t>(chunk), name, index};
 }
 
-void add_points(const ClusterData& data, int chunk, Panel& poses) {
+// The words of all cameras, the ground and the wheels at the places of all poses.
+class PlaceWords {
+ public:
+  PlaceWords(const ClusterData& data, int chunk)
+      : sensors_(static_cast<int>(data.problem.cameras.size()) - kWheels) {
+    for (std::size_t k = 0; k < data.state.poses.size(); ++k)
+      for (int s = 0; s < sensors_; ++s)
+        words_.push_back(
+            stream(data, "place", place_of(data, static_cast<int>(k), s + kWheels), chunk)());
+  }
+  [[nodiscard]] Signs signs(int pose, int camera) const {
+    return signs_of(words_[at(pose * sensors_ + camera - kWheels)]);
+  }
+
+ private:
+  int sensors_;
+  std::vector<std::uint64_t> words_;
+};
+
+void add_points(const ClusterData& data, int chunk, const PlaceWords& places, Panel& poses) {
   const double noise = std::sqrt(data.chi2);
   for (std::size_t p = 0; p < data.problem.points.size(); ++p) {
     const PointTerms point = point_terms(data.problem, data.layout, data.options, data.state, p);
@@ -38,8 +57,7 @@ void add_points(const ClusterData& data, int chunk, Panel& poses) {
     Panel residuals(2 * static_cast<Eigen::Index>(point.terms.size()), kColumns);
     for (std::size_t t = 0; t < point.terms.size(); ++t) {
       const PointTerms::Term& term = point.terms[t];
-      const Signs together =
-          track + signs_of(stream(data, "place", place_of(data, term.pose, term.camera), chunk)());
+      const Signs together = track + places.signs(term.pose, term.camera);
       for (int row = 0; row < 2; ++row) {
         auto out = residuals.row(2 * static_cast<Eigen::Index>(t) + row);
         out = term.r(row) * together;
@@ -50,15 +68,15 @@ void add_points(const ClusterData& data, int chunk, Panel& poses) {
   }
 }
 
-void add_motions(const ClusterData& data, int chunk, Panel& poses, Panel& scales) {
+void add_motions(
+    const ClusterData& data, int chunk, const PlaceWords& places, Panel& poses, Panel& scales) {
   for (std::size_t i = 0; i < data.problem.motions.size(); ++i) {
     const MotionConstraint& motion = data.problem.motions[i];
     const MotionScore score = motion_score(data, motion);
     Random random = stream(data, "motion", i, chunk);
     Panel noise(6, kColumns);
     for (int row = 0; row < 6; ++row) noise.row(row) = signs_of(random());
-    const Signs together =
-        signs_of(stream(data, "place", place_of(data, motion.to, kWheels), chunk)());
+    const Signs together = places.signs(motion.to, kWheels);
     const Panel sum = score.root.lazyProduct(noise) + score.score.lazyProduct(together);
     if (score.from >= 0) poses.middleRows<6>(row_of(at(score.from))) += sum.topRows<6>();
     if (score.to >= 0) poses.middleRows<6>(row_of(at(score.to))) += sum.middleRows<6>(6);
@@ -140,8 +158,9 @@ DrawnCovariance drawn_covariance(const ClusterData& data, const BundleSystem& sy
     poses[c] = Panel::Zero(row_of(variables), kColumns);
     scales[c] = Panel::Zero(free, kColumns);
     const int chunk = static_cast<int>(c);
-    add_points(data, chunk, poses[c]);
-    add_motions(data, chunk, poses[c], scales[c]);
+    const PlaceWords places(data, chunk);
+    add_points(data, chunk, places, poses[c]);
+    add_motions(data, chunk, places, poses[c], scales[c]);
     add_priors(data, chunk, poses[c], scales[c]);
   });
   // The inverse of a covariance drawn from n cases is too large by n / (n - 7) in the mean.
