@@ -5,7 +5,6 @@
 #include <span>
 
 #include "base/index.hpp"
-#include "base/median.hpp"
 #include "base/parallel.hpp"
 #include "mapping/known_covariance.hpp"
 
@@ -81,12 +80,18 @@ LandmarkCovariances landmark_covariances(const MappingInput& input,
                                          double sigma_px,
                                          const TriangulationOptions& options) {
   constexpr std::size_t kFewest = 20;
-  constexpr double kMedianChi2 = 2.366;  // 3 degrees of freedom
+  constexpr double kShare = 0.95;
+  constexpr double kChi2 = 7.815;  // its quantile, 3 degrees of freedom
   LandmarkCovariances result;
-  const auto apart = distances(input, T_map_vehicle, tracks, sigma_px, options);
+  auto apart = distances(input, T_map_vehicle, tracks, sigma_px, options);
   result.compared = static_cast<int>(apart.size());
   constexpr double kLeast = 0.05;  // exact pixels would promise exact landmarks
-  if (apart.size() >= kFewest) result.factor = std::max(kLeast, median(apart) / kMedianChi2);
+  if (apart.size() >= kFewest) {
+    const auto tail =
+        apart.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(apart.size() - 1));
+    std::nth_element(apart.begin(), tail, apart.end());
+    result.factor = std::max(kLeast, *tail / kChi2);
+  }
   result.of_track.assign(tracks.size(), unknown_covariance<Eigen::Matrix3d>());
   parallel_for_small(tracks.size(), options.num_threads, [&](std::size_t t) {
     if (tracks[t].p_map)

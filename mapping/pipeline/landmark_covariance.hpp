@@ -12,7 +12,8 @@ namespace roadbook {
 // Independent noise of the pixels gives (sum J^T J / sigma^2)^-1. But the error of a corner changes
 // slowly from view to view, so many views tell less than that. The map itself shows by how much:
 // the views of a track are split into an early and a late half, and both are triangulated alone.
-// All covariances are multiplied by the one factor that explains the median of their distances.
+// All covariances are multiplied by the one factor with which the 95 % region holds 95 % of their
+// distances. The tail counts: wrong matches and apparent corners are in it.
 
 struct LandmarkCovariances {
   std::vector<Eigen::Matrix3d> of_track;  ///< [m^2], map axes; NaN: unknown
