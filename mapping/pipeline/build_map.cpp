@@ -302,7 +302,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
     finish.keep_other_layers = existing && has_same_poses(existing->map, map);
     if (options.more_layers) finish.layers = options.more_layers(map);
     auto meta = inputs_meta(drives, options);
-    meta["gauge"] = "first keyframe fixed";
+    meta["gauge"] = "first keyframe of each piece fixed";
     if (summary.components > 1) meta[kPiecesKey] = std::to_string(summary.components);
     build.finish(map, meta, finish);
     return 0;

@@ -142,6 +142,40 @@ inline std::vector<double> landmark_errors(const Map& map, const Drive& drive, d
   return errors;
 }
 
+/// Shares of keyframes whose true error lies in the 95 % region that the map states, relative to
+/// the first keyframe of a map in one piece.
+struct Coverage {
+  double position = 0.0;  ///< x and y
+  double heading = 0.0;
+  double six = 0.0;
+  int unknown = 0;  ///< keyframes without a covariance
+};
+
+inline Coverage coverage_of(const Map& map, const Drive& drive) {
+  const auto truth = truth_of(map, drive);
+  Coverage coverage;
+  double count = 0.0;
+  for (std::size_t k = 1; k < truth.size(); ++k) {
+    if (!truth[k] || !truth[0]) continue;
+    const Matrix6d& C = map.keyframes[k].covariance;
+    if (!C.allFinite()) {
+      ++coverage.unknown;
+      continue;
+    }
+    const Eigen::Isometry3d moved =
+        map.T_map_vehicle(0).inverse() * map.T_map_vehicle(static_cast<int>(k));
+    const Vector6d e = se3_log(moved.inverse() * (truth[0]->inverse() * *truth[k]));
+    const Eigen::Matrix2d flat = C.topLeftCorner<2, 2>();
+    count += 1.0;
+    coverage.position += e.head<2>().dot(flat.ldlt().solve(e.head<2>())) < 5.991 ? 1.0 : 0.0;
+    coverage.heading += e(5) * e(5) < 3.841 * C(5, 5) ? 1.0 : 0.0;
+    coverage.six += e.dot(C.ldlt().solve(e)) < 12.592 ? 1.0 : 0.0;
+  }
+  for (double* share : {&coverage.position, &coverage.heading, &coverage.six})
+    *share /= std::max(1.0, count);
+  return coverage;
+}
+
 inline double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

@@ -126,6 +126,12 @@ void maps_well(const fs::path& folder, const fs::path& drive_folder) {
   EXPECT_EQ(loops.wrong, 0);
   EXPECT_GT(loops.revisits, 50);
   EXPECT_GT(loops.recall(), 0.9);
+  // One drive with one systematic error of its corners: a part of the six may lie outside.
+  const auto coverage = test::coverage_of(load_map(folder / "map.gpkg"), drive);
+  EXPECT_EQ(coverage.unknown, 0);
+  EXPECT_GT(coverage.position, 0.9);
+  EXPECT_GT(coverage.heading, 0.9);
+  EXPECT_GT(coverage.six, 0.7);
   // Images at half scale have the same accuracy at half the distance. The requirement for images at
   // full scale is 5 cm within 10 m.
   const auto landmarks = test::landmark_errors(load_map(folder / "map.gpkg"), drive, 5.0);
