@@ -46,13 +46,13 @@ double leverage_of(const PointTerms& point, BundleSystem& system) {
     link.W.noalias() += t.J_pose.transpose() * t.J_point;
   }
   double trace = 0.0;
-  for (const auto& [a, one] : links) {
-    const Eigen::Matrix<double, 6, 3> Y = one.W * point.V_inverse;
-    for (const auto& [b, other] : links) {
-      const Matrix6d Z = system.shared_covariance(a, b);
-      Matrix6d information = -Y * other.W.transpose();
-      if (a == b) information += one.U;
-      trace += information.cwiseProduct(Z).sum();
+  for (auto one = links.begin(); one != links.end(); ++one) {
+    const Eigen::Matrix<double, 6, 3> Y = one->second.W * point.V_inverse;
+    for (auto other = one; other != links.end(); ++other) {
+      const Matrix6d Z = system.shared_covariance(one->first, other->first);
+      const double shared = (Z * other->second.W).cwiseProduct(Y).sum();  // tr(Y W^T Z^T)
+      trace -= (other == one ? 1.0 : 2.0) * shared;
+      if (other == one) trace += one->second.U.cwiseProduct(Z).sum();
     }
   }
   const double freedom = 2.0 * static_cast<double>(point.terms.size()) - 3.0;
