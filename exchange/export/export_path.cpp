@@ -64,12 +64,16 @@ const Lane* lane_of(const StoredPaths& stored, std::uint64_t id) {
   return nullptr;
 }
 
+std::string sigma_or_none(double sigma_m) {
+  return std::isnan(sigma_m) ? "none" : fixed_text(sigma_m, 4);
+}
+
 std::string csv_text(const StoredPaths& stored,
                      const std::vector<Rows>& tables,
                      const PathConditions& conditions) {
   std::string text = std::string("# ") + kSchema + "; map " + stored.digest + "; date " +
                      stored.source.date_utc + "; sessions " + stored.source.sessions +
-                     "; sigma_m " + fixed_text(stored.source.sigma_m, 4) + "; coverage " +
+                     "; sigma_m " + sigma_or_none(stored.source.sigma_m) + "; coverage " +
                      fixed_text(stored.network.coverage, 4) + "; speed_date " +
                      conditions.speed_date().value_or("none") + "; speed_coverage " +
                      fixed_text(conditions.speed_coverage(), 4) + "; friction_date " +

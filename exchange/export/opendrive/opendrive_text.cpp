@@ -158,7 +158,8 @@ class Writer {
       append_line(header, "userData", {{"code", code}, {"value", value}});
     };
     append_data("map_digest", stored.digest);
-    append_data("sigma_m", fixed_text(stored.source.sigma_m, 4));
+    if (!std::isnan(stored.source.sigma_m))
+      append_data("sigma_m", fixed_text(stored.source.sigma_m, 4));
     append_data("speeds", planner_.speeds_known() ? "map" : "bends and default limit");
   }
 
