@@ -28,6 +28,7 @@ inline Map driven_road() {
       keyframe.drive_frame = i;
       keyframe.map_frame = static_cast<int>(map.map_frames.size());
       keyframe.travelled_m = 0.2 * i;
+      keyframe.covariance.setZero();  // exact
       map.map_frames.push_back(frame);
       map.keyframes.push_back(keyframe);
       s.t_end_ns = keyframe.t_ns;

@@ -84,6 +84,7 @@ class FrictionPlace {
       keyframe.drive_frame = static_cast<int>(frame);
       keyframe.map_frame = static_cast<int>(map.map_frames.size());
       keyframe.travelled_m = travelled;
+      keyframe.covariance.setZero();  // exact
       map.map_frames.push_back({moved ? moved(T) : T});
       map.keyframes.push_back(keyframe);
       if (frame == 0) session.t_begin_ns = t_ns;

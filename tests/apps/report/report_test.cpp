@@ -34,10 +34,12 @@ Map small_map() {
     keyframe.t_ns = std::int64_t{1'000'000'000} * (i + 1);
     keyframe.drive_frame = keyframe.map_frame = i;
     keyframe.travelled_m = 5.0 * i;
+    keyframe.covariance.setZero();  // exact
     map.keyframes.push_back(keyframe);
     Landmark landmark;
     landmark.map_frame = i;
     landmark.p_frame = {2.0, 0.0, 0.0};
+    landmark.covariance.setZero();
     map.landmarks.push_back(landmark);
     Observation observation;
     observation.landmark = observation.keyframe = i;
