@@ -26,7 +26,7 @@ namespace roadbook {
 struct ClusterOptions {
   int cases = 128;  ///< draws; a multiple of 64
   double cell_m = 2.0;
-  int sampled_poses = 12;   ///< of each piece, from which the effective clusters are counted
+  int sampled_poses = 6;    ///< from which the effective clusters are counted
   std::uint64_t seed = 20;  ///< of the signs
 
   /// Throws InvalidOption.

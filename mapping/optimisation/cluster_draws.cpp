@@ -46,7 +46,7 @@ class PlaceWords {
   std::vector<std::uint64_t> words_;
 };
 
-void add_points(const ClusterData& data, int chunk, const PlaceWords& places, Panel& poses) {
+void draw_points(const ClusterData& data, int chunk, const PlaceWords& places, Panel& poses) {
   const double noise = std::sqrt(data.chi2);
   for (std::size_t p = 0; p < data.problem.points.size(); ++p) {
     const PointTerms point = point_terms(data.problem, data.layout, data.options, data.state, p);
@@ -68,7 +68,7 @@ void add_points(const ClusterData& data, int chunk, const PlaceWords& places, Pa
   }
 }
 
-void add_motions(
+void draw_motions(
     const ClusterData& data, int chunk, const PlaceWords& places, Panel& poses, Panel& scales) {
   for (std::size_t i = 0; i < data.problem.motions.size(); ++i) {
     const MotionConstraint& motion = data.problem.motions[i];
@@ -84,7 +84,7 @@ void add_motions(
   }
 }
 
-void add_priors(const ClusterData& data, int chunk, Panel& poses, Panel& scales) {
+void draw_priors(const ClusterData& data, int chunk, Panel& poses, Panel& scales) {
   const std::vector<int> rows = free_scales(data.problem);
   for (std::size_t s = 0; s < rows.size(); ++s)
     if (rows[s] >= 0)
@@ -159,9 +159,9 @@ DrawnCovariance drawn_covariance(const ClusterData& data, const BundleSystem& sy
     scales[c] = Panel::Zero(free, kColumns);
     const int chunk = static_cast<int>(c);
     const PlaceWords places(data, chunk);
-    add_points(data, chunk, places, poses[c]);
-    add_motions(data, chunk, places, poses[c], scales[c]);
-    add_priors(data, chunk, poses[c], scales[c]);
+    draw_points(data, chunk, places, poses[c]);
+    draw_motions(data, chunk, places, poses[c], scales[c]);
+    draw_priors(data, chunk, poses[c], scales[c]);
   });
   // The inverse of a covariance drawn from n cases is too large by n / (n - 7) in the mean.
   const double share = 1.0 / static_cast<double>(data.clusters.cases - 7);
