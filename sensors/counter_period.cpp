@@ -118,6 +118,7 @@ std::vector<double> without_wraps(std::span<const CounterValue> values, double p
   constexpr double kMemoryS = 0.1;  // of the rate: rows may follow each other closely
   std::vector<double> continued;
   double rate = 0.0;
+  double wraps = 0.0;  // whole; sums of steps would round at each row
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i == 0) {
       continued.push_back(values[0].value);
@@ -127,7 +128,8 @@ std::vector<double> without_wraps(std::span<const CounterValue> values, double p
     const double expected = std::clamp(rate * dt_s, -0.4 * period, 0.4 * period);
     const double turned = expected + std::remainder(step(values, i) - expected, period);
     if (dt_s > 0.0) rate += std::min(1.0, dt_s / kMemoryS) * (turned / dt_s - rate);
-    continued.push_back(continued.back() + turned);
+    wraps += std::round((turned - step(values, i)) / period);
+    continued.push_back(values[i].value + wraps * period);
   }
   return continued;
 }
