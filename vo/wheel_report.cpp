@@ -1,5 +1,6 @@
 #include "vo/wheel_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>

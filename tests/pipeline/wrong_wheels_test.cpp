@@ -104,7 +104,9 @@ TEST(WrongWheels, AreNamedAndDoNotBendTheMap) {
     SCOPED_TRACE(words);
     write_fault(folder / "drive", original.str(), fault);
     const Mapped map = mapped(folder / "drive");
-    EXPECT_LT(map.ate_m, 1.5 * sound.ate_m + 0.002);
+    // No loop closes in 14 s: where the cameras work alone, centimetres remain. Wheels that are
+    // believed bend this map by more than half a metre.
+    EXPECT_LT(map.ate_m, 1.5 * sound.ate_m + 0.02);
     EXPECT_NEAR(static_cast<double>(map.keyframes), static_cast<double>(sound.keyframes),
                 0.05 * static_cast<double>(sound.keyframes));
     ASSERT_EQ(map.doubts.size(), 1U);
