@@ -6,7 +6,7 @@
 
 #include "base/progress.hpp"
 #include "drive/drive.hpp"
-#include "vo/track_drive.hpp"
+#include "vo/track_options.hpp"
 
 namespace roadbook {
 

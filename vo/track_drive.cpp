@@ -6,28 +6,11 @@
 
 #include "base/error.hpp"
 #include "vo/odometry_run.hpp"
-#include "vo/standstill.hpp"
-#include "vo/wheel_doubts.hpp"
-#include "vo/wheel_report.hpp"
+#include "vo/wheels/standstill.hpp"
+#include "vo/wheels/wheel_doubts.hpp"
+#include "vo/wheels/wheel_report.hpp"
 
 namespace roadbook {
-
-void TrackDriveOptions::check() const {
-  features.check();
-  odometry.check();
-  if (!(max_gap_s > 0.0)) throw InvalidOption("max_gap_s", std::to_string(max_gap_s), "> 0");
-}
-
-Eigen::Vector2d full_size_pixel(const Eigen::Vector2d& half_size_pixel) {
-  return kFullPerHalfPixel * half_size_pixel + Eigen::Vector2d::Constant(0.5);
-}
-
-Rig half_size(const Rig& rig) {
-  Rig half = rig;
-  for (auto& mounted : half.cameras)
-    mounted.camera = mounted.camera.scaled(1.0 / kFullPerHalfPixel);
-  return half;
-}
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "vo/keyframe_track.hpp"
-#include "vo/wheel_doubts.hpp"
+#include "vo/wheels/wheel_doubts.hpp"
 
 namespace roadbook {
 

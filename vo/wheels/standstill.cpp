@@ -1,4 +1,4 @@
-#include "vo/standstill.hpp"
+#include "vo/wheels/standstill.hpp"
 
 #include <algorithm>
 #include <cmath>

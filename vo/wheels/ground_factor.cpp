@@ -2,19 +2,20 @@
 #include <cmath>
 
 #include "vo/ground_scale.hpp"
-#include "vo/wheel_doubts.hpp"
+#include "vo/wheels/wheel_doubts.hpp"
 
 namespace roadbook {
 namespace {
 
 constexpr double kAhead_m = 1.5;
 constexpr double kBeside_m = 1.6;
-constexpr std::size_t kReach = 60;  // keyframes in which the car gets to a corner that it sees
+constexpr std::size_t kReachKeyframes =
+    60;  // keyframes in which the car gets to a corner that it sees
 
 // Height of a corner in the frame of the vehicle pose nearest to it. Empty where none is near.
 std::optional<double> height_beside(const VoResult& odometry, const Track& track) {
   const auto first = static_cast<std::size_t>(track.observations.front().keyframe);
-  const std::size_t end = std::min(odometry.keyframes.size(), first + kReach);
+  const std::size_t end = std::min(odometry.keyframes.size(), first + kReachKeyframes);
   double best = std::hypot(kAhead_m, kBeside_m);
   std::optional<double> height;
   for (std::size_t k = first; k < end; ++k) {

@@ -1,4 +1,4 @@
-#include "vo/wheel_report.hpp"
+#include "vo/wheels/wheel_report.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "vo/wheel_doubts.hpp"
+#include "vo/wheels/wheel_doubts.hpp"
 
 #include <algorithm>
 #include <array>
