@@ -11,7 +11,7 @@
 namespace roadbook {
 
 /// Returns the times [ns] in which the wheels stand but the images move: ascending, apart from each
-/// other. Compares two frames a second or more of each standstill of the wheels; a standing car's
+/// other. Compares two frames every 0.4 s of each standstill of the wheels; a standing car's
 /// images show the same corners at the same pixels. Other road users that move do not matter as
 /// long as they cover less than half of the corners.
 [[nodiscard]] std::vector<std::pair<std::int64_t, std::int64_t>> false_standstills(
