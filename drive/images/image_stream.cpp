@@ -177,8 +177,7 @@ bool same_content(const ImageStream& stream,
          read_file(stream.folder / stream.names.at(b.t_ns), b_bytes) && a_bytes == b_bytes;
 }
 
-// A camera that hangs writes one image again and again; even of a scene at rest the images of a
-// real camera differ by its noise.
+// Of a camera that hangs: even at rest the images of a real camera differ by its noise.
 std::vector<RepeatedImages> find_repeats(const ImageStream& stream,
                                          const std::vector<ImageRow>& rows,
                                          const std::vector<ImageHeader>& headers) {
