@@ -12,8 +12,6 @@ namespace roadbook {
 namespace {
 
 constexpr int kColumns = 64;  // one bit of a random word each
-// Of six Gaussian components with p = 1e-4. A farther motion is false; its noise is not Gaussian.
-constexpr double kMotionWidth = 5.28;
 using Panel = BlockCholesky::Panel;
 using Signs = Eigen::Matrix<double, 1, kColumns>;
 
@@ -131,7 +129,7 @@ MotionScore motion_score(const ClusterData& data, const MotionConstraint& motion
   Eigen::Matrix<double, 6, 13> J;
   J << e.J_from, e.J_to, e.J_scale;
   const double length = std::sqrt(e.r.dot(motion.information * e.r));
-  const double weight = std::min(1.0, kMotionWidth / std::max(length, 1e-12));
+  const double weight = std::min(1.0, data.options.motion_loss_width / std::max(length, 1e-12));
   const Matrix6d U = motion.information.llt().matrixU();
   result.score = weight * J.transpose() * motion.information * e.r;
   result.root = std::sqrt(weight) * J.transpose() * U.transpose();

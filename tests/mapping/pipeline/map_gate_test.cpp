@@ -104,7 +104,7 @@ Evidenced with_views(const std::vector<int>& views, int landmarks, double camera
   for (std::size_t k = 0; k < views.size(); ++k)
     for (int v = 0; v < views[k]; ++v) {
       e.adjusted.stage.problem.observations.push_back(
-          {static_cast<int>(k), next++ % landmarks, 0, {}, 1.0});
+          {static_cast<int>(k), next++ % landmarks, 0, Eigen::Vector2d::Zero(), 1.0});
       e.adjusted.result.inlier.push_back(1);
     }
   e.cameras.resize(2);
