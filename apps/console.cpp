@@ -10,6 +10,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace roadbook {
 namespace {
@@ -109,6 +110,9 @@ void print_error(const Error& error) {
   if (const auto* const bad = dynamic_cast<const BadInput*>(&error);
       bad != nullptr && !bad->problems().empty()) {
     for (const Problem& problem : bad->problems()) print_error(to_line(problem));
+  } else if (error.status() == ExitStatus::kRefused) {
+    std::istringstream lines(error.what());  // the warnings of its drives may follow
+    for (std::string line; std::getline(lines, line);) print_error(line);
   } else {
     print_error(std::string(error.what()));
   }

@@ -1,8 +1,10 @@
 #include "vo/track_drive.hpp"
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "vo/odometry_run.hpp"
@@ -20,8 +22,21 @@ double camera_height(const Rig& rig) {
   return sum / static_cast<double>(rig.cameras.size());
 }
 
+// Shares of the drive that the cameras alone must know to be asked about the wheels, and to work
+// without them.
+constexpr double kAskedShare = 0.5;
+constexpr double kAloneShare = 0.9;
+
+double share_known_by(const VoResult& sight, const Drive& drive, const WheelOdometry& wheels) {
+  std::vector<std::int64_t> frames_ns;
+  for (std::size_t i = 0; i < drive.frame_count(); ++i)
+    frames_ns.push_back(drive.frame_stamp_ns(i));
+  return known_share(sight, wheels, frames_ns);
+}
+
 // Odometry of a drive whose wheels may be wrong. It lets the cameras work alone first, and then
-// leaves out the wheels where they contradict the cameras, or all of them.
+// leaves out the wheels where they contradict the cameras, or all of them. Cameras that lose their
+// way alone cannot replace the wheels: then these stay in use, and the doubts are stated.
 VoResult track_with_doubts(const Drive& drive,
                            const std::vector<cv::Mat>& masks,
                            const TrackDriveOptions& options,
@@ -33,7 +48,17 @@ VoResult track_with_doubts(const Drive& drive,
   if (sight.keyframes.size() < 2) return run_odometry(drive, masks, options, &wheels, progress);
   const WheelComparison comparison = compare_wheels(sight, wheels, height);
   const std::int64_t origin_ns = drive.frame_stamp_ns(0);
-  const SensorDoubt all = describe_doubts(comparison, sight, origin_ns, true);
+  SensorDoubt all = describe_doubts(comparison, sight, origin_ns, true);
+  const double known = share_known_by(sight, drive, wheels);
+  if (known < kAloneShare) {
+    VoResult result = run_odometry(drive, masks, options, &wheels, progress);
+    if (known < kAskedShare || !comparison.doubts_all()) return result;
+    all.want =
+        "what the cameras see within 4 sigma; the cameras lose their way without the wheels, "
+        "which stay in use";
+    result.doubts.push_back(all);
+    return result;
+  }
   if (comparison.doubts_all()) {
     sight.doubts.push_back(all);
     return sight;

@@ -83,11 +83,12 @@ std::vector<double> leverages(const BundleProblem& problem,
   return leverage;
 }
 
-// Covariance of a normal distribution whose 95 % region is as large as Hotelling's for six
-// dimensions and that many degrees of freedom: the ratio of both is near n / (n - 9).
+// Covariance of a normal distribution whose 95 % region of a position is as large as Hotelling's
+// for three dimensions and that many degrees of freedom: the ratio of both is near n / (n - 5).
+// Six dimensions would need n / (n - 9); most consumers use a position.
 double few_clusters_factor(double clusters) {
   constexpr double kMost = 2.8;
-  return clusters > 14.0 ? clusters / (clusters - 9.0) : kMost;
+  return clusters > 8.0 ? std::min(kMost, clusters / (clusters - 5.0)) : kMost;
 }
 
 }  // namespace

@@ -151,6 +151,13 @@ void renew_drive_paths(const Map& map,
   update.commit();
 }
 
+void add_warnings_of(const std::vector<Drive>& drives, MapSummary& summary) {
+  for (const Drive& drive : drives) {
+    const auto warnings = drive.warnings();
+    summary.warnings.insert(summary.warnings.end(), warnings.begin(), warnings.end());
+  }
+}
+
 void fill_summary(const std::vector<Drive>& drives,
                   const Map& map,
                   const Adjusted& adjusted,
@@ -165,38 +172,43 @@ void fill_summary(const std::vector<Drive>& drives,
     summary.drive_seconds += static_cast<double>(drive.frame_stamp_ns(drive.frame_count() - 1) -
                                                  drive.frame_stamp_ns(0)) *
                              1e-9;
-    const auto warnings = drive.warnings();
-    summary.warnings.insert(summary.warnings.end(), warnings.begin(), warnings.end());
   }
+  add_warnings_of(drives, summary);
   if (const auto error = truth_error(drives, map, summary.scale_source == ScaleSource::kFree)) {
     summary.ate_median_m = error->median_m;
     summary.ate_p95_m = error->p95_m;
   }
 }
 
-}  // namespace
-
-std::vector<VehicleSource> sources_of(const std::vector<SessionVehicle>& vehicles) {
-  std::vector<VehicleSource> sources;
-  for (const SessionVehicle& vehicle : vehicles) sources.push_back(vehicle.source);
-  return sources;
+// Refuses drives whose parts do not hold together. The sensors that may be the cause become
+// warnings.
+void require_sound_graph(const std::vector<Drive>& drives,
+                         const MappingInput& input,
+                         const std::vector<LoopClosure>& loops,
+                         const Relaxed& relaxed,
+                         const GateInputs& gate,
+                         const MapOptions& options,
+                         MapSummary& summary) {
+  try {
+    require_joined(input, relaxed, gate, options.gate);
+    require_loops(loops, gate, options.gate);
+  } catch (const Refused&) {
+    CameraDoubtOptions doubt;
+    doubt.num_threads = options.num_threads;
+    const auto doubts = to_problems(doubt_cameras(input, relaxed.T_map_vehicle, doubt), drives);
+    summary.warnings.insert(summary.warnings.end(), doubts.begin(), doubts.end());
+    throw;
+  }
 }
 
-MapSummary build_map(const std::vector<std::filesystem::path>& folders,
-                     const std::filesystem::path& map_path,
-                     const MapOptions& options,
-                     const Progress& progress) {
-  options.check();
-  MapSummary summary;
-  StageClock clock(summary.stages);
-  const auto drives = clock.run("open", [&] {
-    std::vector<Drive> opened;
-    for (const auto& folder : folders) {
-      opened.push_back(Drive::open(folder));
-      if (!options.model.empty()) opened.back().correct(options.model);
-    }
-    return opened;
-  });
+// The stages of build_map after the drives are open.
+void build_from(const std::vector<Drive>& drives,
+                const std::vector<std::filesystem::path>& folders,
+                const std::filesystem::path& map_path,
+                const MapOptions& options,
+                const Progress& progress,
+                StageClock& clock,
+                MapSummary& summary) {
   const MapHold hold(map_path);
   const std::string key = checkpoint_key(drives, options);
   const auto existing = existing_map(map_path, drives, options);
@@ -206,7 +218,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
     summary.digest = load_meta(map_path).digest;
     if (hold.waiting_build() == key) hold.remove_checkpoints();  // killed after it was done
     renew_drive_paths(existing->map, drives, map_path);
-    return summary;
+    return;
   }
   std::vector<std::string> keep_tables;
   std::vector<std::string> names_before;
@@ -251,8 +263,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   const auto relaxed =
       clock.run("pose graph", [&] { return relax_poses(input, loops, options, progress); });
   const GateInputs gate = gate_inputs(folders, map_path);
-  require_joined(input, relaxed, gate, options.gate);
-  require_loops(loops, gate, options.gate);
+  require_sound_graph(drives, input, loops, relaxed, gate, options, summary);
   if (relaxed.components > 1)
     summary.warnings.push_back({Severity::kWarning, folders.front().string(), 0, "components",
                                 std::to_string(relaxed.components) + " that no loop closure joins",
@@ -265,10 +276,10 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
     CameraDoubtOptions doubt;
     doubt.num_threads = options.num_threads;
     const auto doubts = to_problems(doubt_cameras(input, adjusted.T_map_vehicle, doubt), drives);
-    require_evidence(input, adjusted, summary.cameras, doubts, gate, options.gate);
     const auto idle = warnings_of_idle_cameras(summary.cameras, input, gate, options.gate);
     summary.warnings.insert(summary.warnings.end(), idle.begin(), idle.end());
     summary.warnings.insert(summary.warnings.end(), doubts.begin(), doubts.end());
+    require_evidence(input, adjusted, summary.cameras, doubts, gate, options.gate);
     return 0;
   });
 
@@ -311,6 +322,37 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   std::set_difference(names_before.begin(), names_before.end(), names_now.begin(), names_now.end(),
                       std::back_inserter(summary.dropped));
   summary.digest = load_meta(map_path).digest;
+}
+
+}  // namespace
+
+std::vector<VehicleSource> sources_of(const std::vector<SessionVehicle>& vehicles) {
+  std::vector<VehicleSource> sources;
+  for (const SessionVehicle& vehicle : vehicles) sources.push_back(vehicle.source);
+  return sources;
+}
+
+MapSummary build_map(const std::vector<std::filesystem::path>& folders,
+                     const std::filesystem::path& map_path,
+                     const MapOptions& options,
+                     const Progress& progress) {
+  options.check();
+  MapSummary summary;
+  StageClock clock(summary.stages);
+  const auto drives = clock.run("open", [&] {
+    std::vector<Drive> opened;
+    for (const auto& folder : folders) {
+      opened.push_back(Drive::open(folder));
+      if (!options.model.empty()) opened.back().correct(options.model);
+    }
+    return opened;
+  });
+  try {
+    build_from(drives, folders, map_path, options, progress, clock, summary);
+  } catch (const Refused& refusal) {
+    add_warnings_of(drives, summary);
+    throw with_warnings(refusal, summary.warnings);
+  }
   return summary;
 }
 

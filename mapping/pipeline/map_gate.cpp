@@ -193,6 +193,12 @@ void require_evidence(const MappingInput& input,
   }
 }
 
+Refused with_warnings(const Refused& refusal, const std::vector<Problem>& warnings) {
+  std::string lines = refusal.what();
+  for (const Problem& warning : warnings) lines += "\n" + to_line(warning);
+  return Refused(lines);
+}
+
 std::vector<Problem> warnings_of_idle_cameras(const std::vector<CameraFigures>& cameras,
                                               const MappingInput& input,
                                               const GateInputs& inputs,

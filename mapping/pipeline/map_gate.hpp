@@ -45,6 +45,10 @@ void require_evidence(const MappingInput& input,
                       const GateInputs& inputs,
                       const MapGateOptions& options);
 
+/// The refusal with the warnings as further lines: what is known about the sensors of the drives
+/// that were refused.
+[[nodiscard]] Refused with_warnings(const Refused& refusal, const std::vector<Problem>& warnings);
+
 /// Cameras that contributed hardly anything, or rarely at the time of the others.
 [[nodiscard]] std::vector<Problem> warnings_of_idle_cameras(
     const std::vector<CameraFigures>& cameras,

@@ -173,8 +173,10 @@ void expect_ellipses_to_hold_their_truth(const fs::path& drive, const fs::path& 
     constexpr double kChiSquare95 = 5.991;  // two degrees of freedom
     inside += off.dot(covariance_in_map(judged.map, labels[i])->ldlt().solve(off)) < kChiSquare95;
   }
+  // The covariances of poses allow for errors that visits of one place have in common, whether this
+  // map has them or not. Its ellipses may be wider than its errors (docs/results/accuracy.md).
   EXPECT_GE(inside, 930);
-  EXPECT_LE(inside, 970);
+  EXPECT_LE(inside, 990);
   ::testing::Test::RecordProperty("labels_in_their_ellipse", inside);
 }
 

@@ -62,6 +62,7 @@ struct TwoDrives {
         k.t_ns = session.t_begin_ns + i * std::int64_t{100'000'000};
         map.sessions.back().t_end_ns = k.t_ns;
         k.map_frame = static_cast<int>(map.keyframes.size());
+        k.covariance.setZero();
         k.covariance.diagonal().setConstant(1e-4);
         const double way = -4.0 + 0.5 * kWide * i + 0.3 * s;
         map.map_frames.push_back({pose_from_planar(way, 0.2 - 0.5 * s, 0.02 * s)});

@@ -229,6 +229,28 @@ bool may_be_wrong(const VoResult& odometry, const WheelOdometry& wheels, double 
   return ground && std::abs(std::log(*ground)) > kScaleOff;
 }
 
+double known_share(const VoResult& sight,
+                   const WheelOdometry& wheels,
+                   const std::vector<std::int64_t>& frames_ns) {
+  constexpr double kRolls_m_s = 0.1;
+  const auto& keyframes = sight.keyframes;
+  std::size_t k = 0;  // first keyframe after the middle of the frames
+  double rolls_s = 0.0;
+  double known_s = 0.0;
+  for (std::size_t i = 1; i < frames_ns.size(); ++i) {
+    const auto moved = wheels.between(frames_ns[i - 1], frames_ns[i]);
+    const double dt = static_cast<double>(frames_ns[i] - frames_ns[i - 1]) * 1e-9;
+    if (!moved || moved->motion.head<2>().norm() < kRolls_m_s * dt) continue;
+    rolls_s += dt;
+    const std::int64_t middle = frames_ns[i - 1] + (frames_ns[i] - frames_ns[i - 1]) / 2;
+    while (k < keyframes.size() && keyframes[k].t_ns < middle) ++k;
+    const bool known = k > 0 && k < keyframes.size() && !keyframes[k].after_gap &&
+                       keyframes[k].inliers >= kFewestInliers;
+    if (known) known_s += dt;
+  }
+  return rolls_s > 0.0 ? known_s / rolls_s : 1.0;
+}
+
 WheelComparison compare_wheels(const VoResult& sight,
                                const WheelOdometry& wheels,
                                double camera_height_m) {

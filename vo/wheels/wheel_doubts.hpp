@@ -46,6 +46,12 @@ struct WheelComparison {
                                 const WheelOdometry& wheels,
                                 double camera_height_m);
 
+/// Share of the time in which the wheels roll over which `sight`, an odometry of the cameras alone,
+/// knows the motion. `frames_ns`: stamps of the drive's frames. 1 if the wheels never roll.
+[[nodiscard]] double known_share(const VoResult& sight,
+                                 const WheelOdometry& wheels,
+                                 const std::vector<std::int64_t>& frames_ns);
+
 /// Compares the wheels with the motions of `sight`, an odometry of the cameras alone, over windows
 /// of 1, 4 and 16 keyframes. Wheels may be off by what is usual: their noise, 4 % of the turn (1
 /// sigma: radii and track) and 5 % of the way. `sight` knows lengths up to a factor that changes

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "base/messages.hpp"
@@ -47,7 +48,9 @@ Mapped map_drive(const fs::path& drive, const fs::path& map, std::uint64_t seed,
       mapped.messages.push_back(without_folder(to_line(warning), drive));
   } catch (const Error& error) {
     if (error.status() != ExitStatus::kBadInput && error.status() != ExitStatus::kRefused) throw;
-    mapped.messages.push_back(without_folder(error.what(), drive));
+    std::istringstream lines(error.what());
+    for (std::string line; std::getline(lines, line);)
+      mapped.messages.push_back(without_folder(line, drive));
   }
   return mapped;
 }

@@ -35,6 +35,7 @@ Map map_every(double step_s) {
     Keyframe keyframe;
     keyframe.t_ns = kBegin + std::llround(1e9 * k * step_s);
     keyframe.map_frame = keyframe.drive_frame = k;
+    keyframe.covariance.setZero();
     keyframe.covariance.diagonal().setConstant(1e-6);
     map.keyframes.push_back(keyframe);
   }
