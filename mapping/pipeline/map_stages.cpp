@@ -73,6 +73,24 @@ Map map_of_poses(const MappingInput& input, const Adjusted& adjusted) {
   return map;
 }
 
+// The part of each pose of the problem. Poses behind those of keyframes are of rows of spaces, in
+// the part of a pose that a motion ties them to.
+std::vector<int> pieces_of(const BundleProblem& problem, const Relaxed& relaxed) {
+  std::vector<int> pieces = relaxed.component;
+  const std::size_t keyframes = pieces.size();
+  pieces.resize(problem.poses.size(), -1);
+  // A row's line is tied to its spaces, these to keyframes: two passes reach all.
+  for (int pass = 0; pass < 2; ++pass)
+    for (const MotionConstraint& motion : problem.motions)
+      for (const auto& [known, tied] :
+           {std::pair(motion.from, motion.to), std::pair(motion.to, motion.from)}) {
+        const auto t = static_cast<std::size_t>(tied);
+        if (t >= keyframes && pieces[t] < 0) pieces[t] = pieces[static_cast<std::size_t>(known)];
+      }
+  for (int& piece : pieces) piece = std::max(piece, 0);
+  return pieces;
+}
+
 }  // namespace
 
 MappingInput join_drives(std::vector<VoResult> odometry,
@@ -201,8 +219,9 @@ Adjusted adjust(const MappingInput& input,
       adjusted.T_map_vehicle[k] = adjusted.stage.problem.poses[k].T_map_vehicle;
   }
   if (options.covariances)
-    adjusted.covariance = cluster_covariance(adjusted.stage.problem, adjusted.result.inlier,
-                                             relaxed.component, stage_options.bundle);
+    adjusted.covariance =
+        cluster_covariance(adjusted.stage.problem, adjusted.result.inlier,
+                           pieces_of(adjusted.stage.problem, relaxed), stage_options.bundle);
   triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
   // Adjusted positions are better than triangulated ones.
   for (std::size_t p = 0; p < adjusted.stage.problem.points.size(); ++p)

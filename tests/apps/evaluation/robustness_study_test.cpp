@@ -110,6 +110,27 @@ TEST_F(DamagedFiles, ALateCameraIsLateInEveryRow) {
     EXPECT_EQ(after.stamp_ns(row) - before.stamp_ns(row), 20'000'000);
 }
 
+// The short version of `roadbook evaluate robustness`.
+TEST(Robustness, ADamagedDriveMakesARightMapOrNoneOrIsNamed) {
+  std::vector<DriveFault> faults;
+  for (const char* name :
+       {"wheels: stuck 2.0 s, both", "wheels: wraps at 900 of 90 a turn", "wheels: reversed, one",
+        "wheels: radius x 2", "camera: turned 2 degrees", "camera: 1 us late", "camera: 20 ms late",
+        "cameras: T_BS inverted", "cameras: 12 bits in 16"})
+    faults.push_back(fault_named(name));
+  const RobustnessResult result = study_robustness({}, faults, 1, 0);
+  EXPECT_TRUE(result.clean.messages.empty()) << result.clean.messages.front();
+  for (const RobustnessRun& run : result.runs) {
+    SCOPED_TRACE(run.fault + ": " + name_of(run.outcome));
+    EXPECT_NE(run.outcome, RobustnessOutcome::kWrongSilent);
+    EXPECT_NE(run.outcome, RobustnessOutcome::kRefusedElse);
+    if (!std::isnan(run.error_ratio)) EXPECT_LT(run.error_ratio, 4.0);
+  }
+  EXPECT_EQ(result.runs[1].outcome, RobustnessOutcome::kRight);  // counters are continued
+  EXPECT_EQ(result.runs[5].outcome, RobustnessOutcome::kRight);  // images are paired
+  EXPECT_EQ(result.runs[8].outcome, RobustnessOutcome::kRight);  // greys are scaled
+}
+
 // Half of every image shows things that move with another speed than the place. No landmark may
 // stand on them for long.
 TEST(Robustness, NoLandmarkStaysOnMovingThings) {

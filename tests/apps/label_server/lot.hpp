@@ -71,6 +71,7 @@ inline Map lot_map(const Lot& lot) {
       k.t_ns = session.t_begin_ns +
                static_cast<std::int64_t>(map.keyframes.size()) * std::int64_t{100'000'000};
       k.map_frame = k.drive_frame = static_cast<int>(map.keyframes.size());
+      k.covariance.setZero();
       k.covariance.diagonal().setConstant(1e-4);
       map.map_frames.push_back(
           {T_anew * pose_from_planar(i * kSpaceWidthM / 3.0, aisle * lot.aisle_apart_m, 0.0)});
