@@ -69,7 +69,7 @@ ordered_json run_json(const RobustnessRun& run) {
           {"messages", run.messages}};
 }
 
-ordered_json tally_json(const FaultTally& tally) {
+ordered_json fault_json(const FaultTally& tally) {
   ordered_json runs = ordered_json::array();
   for (const RobustnessRun& run : tally.runs) runs.push_back(run_json(run));
   return {{"fault", tally.fault},
@@ -84,7 +84,7 @@ ordered_json tally_json(const FaultTally& tally) {
           {"runs", runs}};
 }
 
-void say_tally(const FaultTally& tally, Console& console) {
+void say_fault(const FaultTally& tally, Console& console) {
   const std::string drives = " of " + std::to_string(tally.runs.size());
   console.say(tally.fault + ": right " + std::to_string(tally.count(RobustnessOutcome::kRight)) +
               ", refused " + std::to_string(tally.count(RobustnessOutcome::kRefused)) +
@@ -132,8 +132,8 @@ void run_robustness(Console& console, const EvaluateCommand& command) {
   }
   ordered_json list = ordered_json::array();
   for (const FaultTally& tally : tallies) {
-    say_tally(tally, console);
-    list.push_back(tally_json(tally));
+    say_fault(tally, console);
+    list.push_back(fault_json(tally));
   }
   const ordered_json json{{"experiment", "robustness"},
                           {"seed", command.seed},

@@ -53,6 +53,15 @@ ExitStatus check_file(const std::filesystem::path& file, Console& console) {
   return status_of(report.problems);
 }
 
+ExitStatus check_nothing(const std::filesystem::path& path, Console& console) {
+  const std::vector<Problem> problems{{Severity::kError, path.string(), 0, "",
+                                       "no such file or folder",
+                                       "the folder of a drive, or a map file"}};
+  say_verdict(console, problems);
+  console.result({{"problems", to_json(problems)}, {"streams", nlohmann::ordered_json::array()}});
+  return ExitStatus::kBadInput;
+}
+
 }  // namespace
 
 Verb check_verb() {
@@ -62,9 +71,7 @@ Verb check_verb() {
             options.add("PATH", path.get(), "folder of a drive, or map file").required = true;
           },
           [path](Console& console, const CommonOptions&) {
-            if (!std::filesystem::exists(*path))
-              throw BadInput({Severity::kError, path->string(), 0, "", "no such file or folder",
-                              "the folder of a drive, or a map file"});
+            if (!std::filesystem::exists(*path)) return check_nothing(*path, console);
             return std::filesystem::is_directory(*path) ? check_recording(*path, console)
                                                         : check_file(*path, console);
           }};

@@ -47,7 +47,7 @@ double significance(const CameraFit& fit) {
   return most;
 }
 
-// Positions and principal points are told from turns and poses in small ways only.
+// Positions and principal points differ little from turns and poses.
 double least_sigmas(CameraParameter parameter, const CameraDoubtOptions& options) {
   const bool is_weak =
       parameter == CameraParameter::kPosition || parameter == CameraParameter::kCentre;
@@ -123,10 +123,10 @@ CameraDoubt doubt_of(const CameraEvidence& evidence, const std::vector<const Cam
   return doubt;
 }
 
-// Shares of the tracks of each camera (row) that fit when they are taken for another's (column).
+// Shares of the tracks of each camera (row) that fit the calibration of each other camera (column).
 Eigen::MatrixXd shares_as_others(const Rig& rig,
                                  std::span<const CameraEvidence> evidence,
-                                 const VehicleMotion& motion,
+                                 const KeyframeMotion& motion,
                                  const CameraDoubtOptions& options) {
   const std::size_t n = rig.cameras.size();
   Eigen::MatrixXd share(n, n);
@@ -186,7 +186,7 @@ std::vector<CameraDoubt> wrong_parameters(const Rig& rig,
 
 std::vector<CameraDoubt> doubts_of_rig(const Rig& rig,
                                        std::span<const CameraEvidence> evidence,
-                                       const VehicleMotion& motion,
+                                       const KeyframeMotion& motion,
                                        const CameraDoubtOptions& options) {
   std::vector<CameraDoubt> doubts;
   if (rig.cameras.size() < 2) return doubts;
@@ -206,7 +206,7 @@ std::vector<CameraDoubt> doubts_of_rig(const Rig& rig,
 }  // namespace
 
 std::vector<CameraEvidence> camera_evidence(const MappingInput& input,
-                                            const VehicleMotion& motion,
+                                            const KeyframeMotion& motion,
                                             int num_threads) {
   std::vector<CameraEvidence> all;
   for (std::size_t s = 0; s < input.half_rigs.size(); ++s)
@@ -234,7 +234,7 @@ std::vector<CameraDoubt> doubt_cameras(const MappingInput& input,
                                        const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                                        const CameraDoubtOptions& options) {
   std::vector<CameraDoubt> doubts;
-  const VehicleMotion motion = vehicle_motion(input, T_map_vehicle);
+  const KeyframeMotion motion = vehicle_motion(input, T_map_vehicle);
   const auto evidence = camera_evidence(input, motion, options.num_threads);
   std::size_t begin = 0;
   for (const Rig& rig : input.half_rigs) {

@@ -49,7 +49,7 @@ struct CameraDoubtOptions {
 
 /// Of each camera of each session in turn. Deterministic on any number of threads.
 [[nodiscard]] std::vector<CameraEvidence> camera_evidence(const MappingInput& input,
-                                                          const VehicleMotion& motion,
+                                                          const KeyframeMotion& motion,
                                                           int num_threads);
 
 /// What is likely wrong with the cameras: images that repeat, images of two cameras exchanged, the

@@ -28,7 +28,7 @@ struct CameraFigures {
   std::string camera;
   std::size_t keyframes = 0;             ///< with an image of this camera
   std::size_t corners = 0;               ///< key points that took part
-  std::size_t landmarks = 0;             ///< of which a key point fits
+  std::size_t landmarks = 0;             ///< with a key point that fits
   std::optional<double> fit_share;       ///< of the corners; empty without any
   std::optional<double> views;           ///< fitting corners a keyframe; empty without any
   std::optional<MeanResidual> residual;  ///< empty without fitting corners

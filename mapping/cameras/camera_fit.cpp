@@ -32,7 +32,7 @@ struct Normal {
 
 Normal normal_equations(const MountedCamera& camera,
                         const std::vector<CameraTrack>& tracks,
-                        const VehicleMotion& motion,
+                        const KeyframeMotion& motion,
                         const CameraErrors& errors,
                         const ParameterRange& range,
                         double width_px,
@@ -64,7 +64,7 @@ Normal normal_equations(const MountedCamera& camera,
   return normal;
 }
 
-// Broad bounds of each parameter, which hold what the tracks do not determine.
+// Broad bounds of each parameter; they limit parameters that the tracks do not determine.
 CameraErrors prior_sigmas() {
   CameraErrors sigma;
   sigma << 0.3, 0.3, 0.3, 0.3, 60.0, 60.0, 0.3, 0.3, 0.3, 0.3;
@@ -89,9 +89,9 @@ ParameterRange range_of(CameraParameter parameter) {
   return {};
 }
 
-VehicleMotion vehicle_motion(const MappingInput& input,
-                             const std::vector<Eigen::Isometry3d>& T_map_vehicle) {
-  VehicleMotion motion;
+KeyframeMotion vehicle_motion(const MappingInput& input,
+                              const std::vector<Eigen::Isometry3d>& T_map_vehicle) {
+  KeyframeMotion motion;
   motion.T_map_vehicle = T_map_vehicle;
   const auto& keyframes = input.odometry.keyframes;
   const auto joined = [&](std::size_t k) {  // with the keyframe before it
@@ -111,7 +111,7 @@ VehicleMotion vehicle_motion(const MappingInput& input,
 
 double fitting_share(const MountedCamera& camera,
                      const std::vector<CameraTrack>& tracks,
-                     const VehicleMotion& motion,
+                     const KeyframeMotion& motion,
                      double inlier_px) {
   if (tracks.empty()) return -1.0;
   const CameraErrors none = CameraErrors::Zero();
@@ -127,7 +127,7 @@ double fitting_share(const MountedCamera& camera,
 
 double cost_as_calibrated(const MountedCamera& camera,
                           const std::vector<CameraTrack>& tracks,
-                          const VehicleMotion& motion) {
+                          const KeyframeMotion& motion) {
   std::vector<std::optional<Eigen::Vector3d>> points(tracks.size());
   double cost = 0.0;
   for (std::size_t round = 0; round <= kWidthsPx.size(); ++round)
@@ -139,7 +139,7 @@ double cost_as_calibrated(const MountedCamera& camera,
 
 CameraFit fit_camera(const MountedCamera& camera,
                      const std::vector<CameraTrack>& tracks,
-                     const VehicleMotion& motion,
+                     const KeyframeMotion& motion,
                      CameraParameter parameter) {
   CameraFit fit;
   fit.parameter = parameter;

@@ -12,7 +12,9 @@ constexpr double kMinParallaxRad = 0.004;
 constexpr double kFarM = 40.0;      // where a track without parallax starts
 constexpr double kLongestM = 20.0;  // step of a point
 
-Eigen::Isometry3d pose_of_view(const CameraView& view, const VehicleMotion& motion, double late_s) {
+Eigen::Isometry3d pose_of_view(const CameraView& view,
+                               const KeyframeMotion& motion,
+                               double late_s) {
   const auto k = static_cast<std::size_t>(view.keyframe);
   return motion.T_map_vehicle[k] * se3_exp(-late_s * motion.twist[k]);
 }
@@ -20,7 +22,7 @@ Eigen::Isometry3d pose_of_view(const CameraView& view, const VehicleMotion& moti
 }  // namespace
 
 TrackSolver::TrackSolver(const MountedCamera& mounted,
-                         const VehicleMotion& motion,
+                         const KeyframeMotion& motion,
                          const CameraErrors& errors)
     : mounted_(mounted),
       motion_(motion),

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "mapping/cameras/camera_fit.hpp"
+#include "mapping/cameras/camera_errors.hpp"
 #include "sensors/camera.hpp"
 #include "vo/triangulation.hpp"
 
@@ -29,7 +29,7 @@ struct SolvedTrack {
 class TrackSolver {
  public:
   TrackSolver(const MountedCamera& mounted,
-              const VehicleMotion& motion,
+              const KeyframeMotion& motion,
               const CameraErrors& errors);
 
   /// `point` [m, map]: where the search starts, empty for a first search; then the point found.
@@ -48,7 +48,7 @@ class TrackSolver {
   void eliminate(SolvedTrack& track) const;
 
   const MountedCamera& mounted_;
-  const VehicleMotion& motion_;
+  const KeyframeMotion& motion_;
   const CameraErrors& errors_;
   Eigen::Matrix3d R_camera_vehicle_;  ///< the errors taken away
   Eigen::Vector3d p_vehicle_camera_;

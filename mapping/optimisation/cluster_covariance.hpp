@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mapping/optimisation/cluster_options.hpp"
 #include "mapping/optimisation/covariance.hpp"
 
 namespace roadbook {
@@ -22,16 +23,6 @@ namespace roadbook {
 //
 // M is not formed: each of `cases` draws a sign for every cluster, and C is the mean of x x^T over
 // x = H^-1 b (wild bootstrap in one linear step). Deterministic.
-
-struct ClusterOptions {
-  int cases = 128;  ///< draws; a multiple of 64
-  double cell_m = 2.0;
-  int sampled_poses = 6;    ///< from which the effective clusters are counted
-  std::uint64_t seed = 20;  ///< of the signs
-
-  /// Throws InvalidOption.
-  void check() const;
-};
 
 struct ClusterCovariance {
   bool usable = false;

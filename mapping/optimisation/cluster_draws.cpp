@@ -11,13 +11,13 @@
 namespace roadbook {
 namespace {
 
-constexpr int kColumns = 64;  // one bit of a random word each
+constexpr int kDraws = 64;  // one bit of a random word each
 using Panel = BlockCholesky::Panel;
-using Signs = Eigen::Matrix<double, 1, kColumns>;
+using Signs = Eigen::Matrix<double, 1, kDraws>;
 
 Signs signs_of(std::uint64_t word) {
   Signs signs;
-  for (int k = 0; k < kColumns; ++k) signs(k) = (word >> k & 1U) != 0 ? 1.0 : -1.0;
+  for (int k = 0; k < kDraws; ++k) signs(k) = (word >> k & 1U) != 0 ? 1.0 : -1.0;
   return signs;
 }
 
@@ -52,7 +52,7 @@ void draw_points(const ClusterData& data, int chunk, const PlaceWords& places, P
     Random random = stream(data, "landmark", p, chunk);
     const double grown = 1.0 / std::max(0.1, 1.0 - data.leverage[p]);
     const Signs track = grown * signs_of(random());
-    Panel residuals(2 * static_cast<Eigen::Index>(point.terms.size()), kColumns);
+    Panel residuals(2 * static_cast<Eigen::Index>(point.terms.size()), kDraws);
     for (std::size_t t = 0; t < point.terms.size(); ++t) {
       const PointTerms::Term& term = point.terms[t];
       const Signs together = track + places.signs(term.pose, term.camera);
@@ -72,7 +72,7 @@ void draw_motions(
     const MotionConstraint& motion = data.problem.motions[i];
     const MotionScore score = motion_score(data, motion);
     Random random = stream(data, "motion", i, chunk);
-    Panel noise(6, kColumns);
+    Panel noise(6, kDraws);
     for (int row = 0; row < 6; ++row) noise.row(row) = signs_of(random());
     const Signs together = places.signs(motion.to, kWheels);
     const Panel sum = score.root.lazyProduct(noise) + score.score.lazyProduct(together);
@@ -93,7 +93,7 @@ void draw_priors(const ClusterData& data, int chunk, Panel& poses, Panel& scales
     const int v = data.layout.variable[at(prior.pose)];
     if (v < 0) continue;
     Random random = stream(data, "prior", i, chunk);
-    Panel noise(6, kColumns);
+    Panel noise(6, kDraws);
     for (int row = 0; row < 6; ++row) noise.row(row) = signs_of(random());
     const MotionResidual e = motion_residual(
         Eigen::Isometry3d::Identity(), data.state.poses[at(prior.pose)], prior.T_map_vehicle, 1.0);
@@ -149,12 +149,12 @@ DrawnCovariance drawn_covariance(const ClusterData& data, const BundleSystem& sy
   const Eigen::Index free = std::count_if(rows.begin(), rows.end(), [](int r) { return r >= 0; });
   DrawnCovariance result{std::vector<Matrix6d>(variables, Matrix6d::Zero()),
                          std::vector<double>(static_cast<std::size_t>(free), 0.0)};
-  const int chunks = data.clusters.cases / kColumns;
+  const int chunks = data.clusters.cases / kDraws;
   std::vector<Panel> poses(at(chunks));
   std::vector<Panel> scales(at(chunks));
   parallel_for(at(chunks), data.options.num_threads, [&](std::size_t c) {
-    poses[c] = Panel::Zero(row_of(variables), kColumns);
-    scales[c] = Panel::Zero(free, kColumns);
+    poses[c] = Panel::Zero(row_of(variables), kDraws);
+    scales[c] = Panel::Zero(free, kDraws);
     const int chunk = static_cast<int>(c);
     const PlaceWords places(data, chunk);
     draw_points(data, chunk, places, poses[c]);
@@ -166,7 +166,7 @@ DrawnCovariance drawn_covariance(const ClusterData& data, const BundleSystem& sy
   for (std::size_t c = 0; c < at(chunks); ++c) {
     system.solve_reduced(poses[c], scales[c]);
     for (std::size_t v = 0; v < variables; ++v) {
-      const Eigen::Matrix<double, 6, kColumns> x = poses[c].middleRows<6>(row_of(v));
+      const Eigen::Matrix<double, 6, kDraws> x = poses[c].middleRows<6>(row_of(v));
       result.poses[v].noalias() += share * x * x.transpose();
     }
     for (Eigen::Index s = 0; s < free; ++s)

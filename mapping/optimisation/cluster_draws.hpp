@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mapping/optimisation/bundle_adjustment_system.hpp"
-#include "mapping/optimisation/cluster_covariance.hpp"
+#include "mapping/optimisation/cluster_options.hpp"
 
 namespace roadbook {
 

@@ -17,7 +17,7 @@ class RecordedTable {
   explicit RecordedTable(std::filesystem::path file);
 
   [[nodiscard]] std::size_t rows() const { return cells_.size(); }
-  /// Index of the first column whose name begins with `name`. Throws BadInput if there is none.
+  /// Index of the first column whose name begins with `name`. Throws BadInput without one.
   [[nodiscard]] std::size_t column(std::string_view name) const;
   [[nodiscard]] std::string& cell(std::size_t row, std::size_t column);
   [[nodiscard]] const std::string& cell(std::size_t row, std::size_t column) const;

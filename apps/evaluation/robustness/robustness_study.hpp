@@ -22,7 +22,7 @@ struct RobustnessDrive {
 
 /// What `map` made of one damaged drive.
 enum class RobustnessOutcome {
-  kRight,        ///< error at most 1.5 times that of the clean drive, and almost all of it mapped
+  kRight,        ///< error at most 1.5 times that of the clean drive, at least 80 % of its keyframes
   kRefused,      ///< no map, and the message names the sensor
   kRefusedElse,  ///< no map, and the message names another thing
   kWrongSaid,    ///< a wrong map, with a warning that names the sensor

@@ -17,7 +17,7 @@ struct Place {
     for (const char* name : {"a", "b", "c"}) {
       const std::string visit = std::to_string(name[0] - 'a');
       make(
-          "simulate zurich --size small --max-duration-s 6 --image-scale 0.25 "
+          "simulate zurich --size small --max-duration-s 6 --image-scale 0.5 "
           "--visit " +
           visit + " -o " + name);
     }

@@ -112,7 +112,7 @@ TEST(ClusterCovariance, EachPieceIsRelativeToItsOwnFirstPose) {
     for (int k = 0; k < 6; ++k)
       EXPECT_NEAR(std::sqrt(apart.poses[first + i](k, k) / alone.poses[i](k, k)), 1.0, 0.35)
           << "pose " << i << " component " << k;
-  // As one piece, the second part hangs on nothing: unknown, and the first stays known.
+  // As one piece, nothing ties the second part: unknown, and the first stays known.
   const auto loose = cluster_covariance(both, {}, one_piece(both), options);
   ASSERT_TRUE(loose.usable);
   EXPECT_TRUE(is_known(loose.poses[first - 1]));
@@ -129,7 +129,7 @@ TEST(ClusterCovariance, IsTheSameOnAnyNumberOfThreads) {
   for (std::size_t i = 0; i < one.poses.size(); ++i) EXPECT_EQ(one.poses[i], three.poses[i]);
 }
 
-// Wheels that contradict the cameras: the map is off, and says so.
+// Wheels that contradict the cameras: the map is off, and its covariances grow.
 TEST(ClusterCovariance, WheelsThatStoodStillWidenIt) {
   test::SyntheticBundle s = test::synthetic_bundle(
       {.length_m = 30.0, .spacing_m = 0.5, .point_count = 60, .ground_share = 0.0}, 9);

@@ -20,7 +20,8 @@ struct TwoLaps {
 };
 
 constexpr double kRadius = 8.0;
-constexpr int kSteps = 50;  // keyframes of a lap: one each metre
+constexpr int kWholeLap = 50;  // keyframes, one each metre
+constexpr int kSteps = 44;     // of a lap that ends 6 m before its start
 
 TwoLaps drive_two_laps(double second_lap_offset_m) {
   Random random(4);
@@ -31,13 +32,13 @@ TwoLaps drive_two_laps(double second_lap_offset_m) {
   laps.input.has_wheels = {true};
   for (int k = 0; k < 2 * kSteps; ++k) {
     const double radius = k < kSteps ? kRadius : kRadius + second_lap_offset_m;
-    const double angle = 2.0 * std::numbers::pi * k / kSteps;
+    const double angle = 2.0 * std::numbers::pi * (k % kSteps) / kWholeLap;
     laps.poses.push_back(test::on_circle(radius, radius * angle));
     auto view = test::view_from(laps.poses.back(), rig, corners, 15.0, 0.3, random);
     VoKeyframe keyframe;
     keyframe.t_ns = k * 100'000'000LL;
     keyframe.T_odom_vehicle = laps.poses.back();
-    keyframe.travelled_m = kRadius * angle;
+    keyframe.travelled_m = k;
     for (const auto& list : view.corner) keyframe.tracks.emplace_back(list.size(), -1);
     keyframe.features = std::move(view.features);
     laps.input.odometry.keyframes.push_back(std::move(keyframe));

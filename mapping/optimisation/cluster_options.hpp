@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+namespace roadbook {
+
+/// How cluster_covariance counts common errors.
+struct ClusterOptions {
+  int cases = 128;  ///< draws; a multiple of 64
+  double cell_m = 2.0;
+  int sampled_poses = 6;    ///< from which the effective clusters are counted
+  std::uint64_t seed = 20;  ///< of the signs
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+}  // namespace roadbook
