@@ -25,7 +25,7 @@ double camera_height(const Rig& rig) {
 // Shares of the drive that the cameras alone must know to be asked about the wheels, and to work
 // without them.
 constexpr double kAskedShare = 0.5;
-constexpr double kAloneShare = 0.9;
+constexpr double kAloneShare = 0.8;
 
 double share_known_by(const VoResult& sight, const Drive& drive, const WheelOdometry& wheels) {
   std::vector<std::int64_t> frames_ns;

@@ -235,20 +235,20 @@ double known_share(const VoResult& sight,
   constexpr double kRolls_m_s = 0.1;
   const auto& keyframes = sight.keyframes;
   std::size_t k = 0;  // first keyframe after the middle of the frames
-  double rolls_s = 0.0;
+  double moves_s = 0.0;
   double known_s = 0.0;
   for (std::size_t i = 1; i < frames_ns.size(); ++i) {
     const auto moved = wheels.between(frames_ns[i - 1], frames_ns[i]);
     const double dt = static_cast<double>(frames_ns[i] - frames_ns[i - 1]) * 1e-9;
-    if (!moved || moved->motion.head<2>().norm() < kRolls_m_s * dt) continue;
-    rolls_s += dt;
     const std::int64_t middle = frames_ns[i - 1] + (frames_ns[i] - frames_ns[i - 1]) / 2;
     while (k < keyframes.size() && keyframes[k].t_ns < middle) ++k;
     const bool known = k > 0 && k < keyframes.size() && !keyframes[k].after_gap &&
                        keyframes[k].inliers >= kFewestInliers;
+    const bool rolls = moved && moved->motion.head<2>().norm() >= kRolls_m_s * dt;
+    if (known || rolls) moves_s += dt;
     if (known) known_s += dt;
   }
-  return rolls_s > 0.0 ? known_s / rolls_s : 1.0;
+  return moves_s > 0.0 ? known_s / moves_s : 1.0;
 }
 
 WheelComparison compare_wheels(const VoResult& sight,

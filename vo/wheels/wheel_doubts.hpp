@@ -46,8 +46,9 @@ struct WheelComparison {
                                 const WheelOdometry& wheels,
                                 double camera_height_m);
 
-/// Share of the time in which the wheels roll over which `sight`, an odometry of the cameras alone,
-/// knows the motion. `frames_ns`: stamps of the drive's frames. 1 if the wheels never roll.
+/// Share of the time in which the vehicle moves over which `sight`, an odometry of the cameras
+/// alone, knows the motion. The vehicle moves where the wheels roll or the cameras know a motion.
+/// `frames_ns`: stamps of the drive's frames. 1 if it never moves.
 [[nodiscard]] double known_share(const VoResult& sight,
                                  const WheelOdometry& wheels,
                                  const std::vector<std::int64_t>& frames_ns);

@@ -22,8 +22,8 @@ struct RobustnessDrive {
 
 /// What `map` made of one damaged drive.
 enum class RobustnessOutcome {
-  kRight,        ///< error at most 1.5 times that of the clean drive, at least 80 % of its keyframes
-  kRefused,      ///< no map, and the message names the sensor
+  kRight,    ///< error at most 1.5 times that of the clean drive, at least 80 % of its keyframes
+  kRefused,  ///< no map, and the message names the sensor
   kRefusedElse,  ///< no map, and the message names another thing
   kWrongSaid,    ///< a wrong map, with a warning that names the sensor
   kWrongSilent,  ///< a wrong map, without one

@@ -256,6 +256,7 @@ TEST(VisibleGround, WhatStandsThereHidesWhatIsBehindIt) {
       Landmark landmark;
       landmark.p_frame = Eigen::Vector3d(0.1 * i, 5.0, 0.5 + 0.3 * k);  // 5 m to the left
       landmark.covariance.setZero();                                    // exact
+      landmark.covariance.setZero();                                    // exact
       map.landmarks.push_back(landmark);
     }
   const auto walled =
