@@ -33,7 +33,7 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
 }
 
 RegularFile::RegularFile(const std::filesystem::path& file) : fault_("no readable file") {
-  // Without O_NONBLOCK, opening a pipe waits for somebody who writes to it.
+  // Without O_NONBLOCK, opening a pipe waits until a process writes to it.
   const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (fd < 0) return;
   struct stat status {};

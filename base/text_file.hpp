@@ -12,7 +12,7 @@ namespace roadbook {
 void write_text(const std::filesystem::path& file, const std::string& text);
 
 /// A regular file opened for reading. Pipes, sockets, devices and folders are not opened: reading
-/// from a pipe that nobody writes to would wait for ever.
+/// from a pipe without a writer would never end.
 class RegularFile {
  public:
   explicit RegularFile(const std::filesystem::path& file);

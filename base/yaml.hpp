@@ -36,7 +36,7 @@ struct Range {
 class YamlMap {
  public:
   /// Throws BadInput for a file that cannot be read, is no regular file, is not UTF-8 or not YAML,
-  /// is not a mapping, or goes on behind its one document. An empty file is an empty mapping.
+  /// is not a mapping, or has text after its one document. An empty file is an empty mapping.
   /// OpenCV's `%YAML:1.0` first line and `!!opencv-matrix` tags are accepted.
   static YamlMap load(const std::filesystem::path& file);
   /// The same from text; messages give `name` as the file.

@@ -223,7 +223,7 @@ class Loader {
     remember(truth);
   }
 
-  // Detections may stand in any order of time.
+  // The rows of detections may have any order of time.
   template <typename Read>
   void load_detector_table(const fs::path& file, const std::string& name, const Read& read) {
     if (!fs::exists(file)) return;

@@ -8,7 +8,7 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kListed = 3;  // findings of one kind that are told one by one
+constexpr std::size_t kListed = 3;  // findings of one kind with a line each
 
 // The text with each run of digits as one '#'.
 std::string without_numbers(const std::string& text) {

@@ -8,7 +8,7 @@ namespace roadbook {
 // An unknown covariance is a matrix of NaN in memory and NULL in the map file; it is never zero.
 // Zero means exact: the pose that holds the gauge.
 
-/// The covariance of something whose uncertainty nobody knows.
+/// An unknown covariance.
 template <typename Matrix>
 [[nodiscard]] Matrix unknown_covariance() {
   return Matrix::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -106,7 +106,7 @@ std::size_t serve(const LabelServerRequest& request, HttpServer& server, Console
 }  // namespace
 
 std::size_t serve_labels(const LabelServerRequest& request, HttpServer& server, Console& console) {
-  // Nobody else changes the map while pages are open. Others may read it.
+  // No other process changes the map while pages are open. Other processes may read it.
   const MapHold hold(existing_map_file(request.map));
   const std::size_t changes = serve(request, server, console);
   try {

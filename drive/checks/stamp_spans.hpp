@@ -23,7 +23,7 @@ struct StampSpan {
   [[nodiscard]] bool meets(const StampSpan& other) const {
     return first_ns <= other.last_ns && other.first_ns <= last_ns;
   }
-  /// But for what sensors take to start and stop.
+  /// Leaves out the time in which sensors start and stop.
   [[nodiscard]] bool covers(const StampSpan& other) const {
     constexpr std::int64_t kSlackNs = 1'000'000'000;
     return first_ns - other.first_ns <= kSlackNs && other.last_ns - last_ns <= kSlackNs;
