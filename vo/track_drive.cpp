@@ -3,14 +3,16 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
 #include "vo/odometry_run.hpp"
 #include "vo/wheels/standstill.hpp"
+#include "vo/wheels/wheel_correction.hpp"
 #include "vo/wheels/wheel_doubts.hpp"
 #include "vo/wheels/wheel_report.hpp"
+#include "vo/wheels/wheel_signs.hpp"
 
 namespace roadbook {
 
@@ -34,50 +36,135 @@ double share_known_by(const VoResult& sight, const Drive& drive, const WheelOdom
   return known_share(sight, wheels, frames_ns);
 }
 
-// Odometry of a drive whose wheels may be wrong. It lets the cameras work alone first, and then
-// leaves out the wheels where they contradict the cameras, or all of them. Cameras that lose their
-// way alone cannot replace the wheels: then these stay in use, and the doubts are stated.
-VoResult track_with_doubts(const Drive& drive,
-                           const std::vector<cv::Mat>& masks,
-                           const TrackDriveOptions& options,
-                           WheelOdometry& wheels,
-                           const Progress& progress) {
-  const double height = camera_height(drive.rig());
-  const auto alone = [&] { return run_odometry(drive, masks, options, nullptr, progress); };
-  VoResult sight = alone();
-  if (sight.keyframes.size() < 2) return run_odometry(drive, masks, options, &wheels, progress);
-  const WheelComparison comparison = compare_wheels(sight, wheels, height);
-  const std::int64_t origin_ns = drive.frame_stamp_ns(0);
-  SensorDoubt all = describe_doubts(comparison, sight, origin_ns, true);
-  const double known = share_known_by(sight, drive, wheels);
-  if (known < kAloneShare) {
-    VoResult result = run_odometry(drive, masks, options, &wheels, progress);
-    if (known < kAskedShare || !comparison.doubts_all()) return result;
-    all.want =
+// The wheels of a drive, and the odometry with and without them.
+class WheelTrial {
+ public:
+  WheelTrial(const Drive& drive,
+             const std::vector<cv::Mat>& masks,
+             const TrackDriveOptions& options,
+             const Progress& progress)
+      : drive_(drive),
+        masks_(masks),
+        options_(options),
+        progress_(progress),
+        height_m_(camera_height(drive.rig())) {}
+
+  VoResult run() const {
+    const WheelModel& model = *drive_.wheel_model();
+    if (auto result = with_sound_times(model, drive_.wheel_readings())) return std::move(*result);
+    VoResult sight = run_odometry(drive_, masks_, options_, nullptr, progress_);
+    const WheelOdometry wheels(model, drive_.wheel_readings());
+    const double known = sight.keyframes.size() < 2 ? 0.0 : share_known_by(sight, drive_, wheels);
+    if (known < kAskedShare) return run_odometry(drive_, masks_, options_, &wheels, progress_);
+    const auto ground = ground_factor(sight, height_m_);
+    const WheelComparison comparison = compare_wheels(sight, wheels, ground);
+    const auto correction = find_wheel_correction(sight, model, drive_.wheel_readings(), ground);
+    if (correction && correction->is_needed()) {
+      SensorDoubt doubt = describe_correction(*correction, comparison, sight, origin_ns());
+      auto result = with_sound_times(corrected(model, *correction),
+                                     corrected(drive_.wheel_readings(), *correction));
+      if (result) {
+        result->doubts.insert(result->doubts.begin(), std::move(doubt));
+        return std::move(*result);
+      }
+    }
+    return known < kAloneShare ? with_doubtful_wheels(sight, wheels, comparison)
+                               : without_doubtful_wheels(std::move(sight), wheels, comparison);
+  }
+
+ private:
+  [[nodiscard]] std::int64_t origin_ns() const { return drive_.frame_stamp_ns(0); }
+
+  // Odometry with the wheels but for the times in which it shows that they are wrong. Empty if they
+  // show a wrong scale, or are wrong in so much of the drive that the rest says little.
+  [[nodiscard]] std::optional<VoResult> with_sound_times(
+      const WheelModel& model, const std::vector<WheelReading>& readings) const {
+    constexpr int kRounds = 4;
+    const WheelOdometry recorded(model, readings);
+    std::vector<TimeSpan> suspected;  // not used in the next round
+    std::vector<TimeSpan> kept;       // suspected before, and used since
+    std::vector<TimeSpan> kept_unknown;
+    for (const auto& [begin, end] : false_standstills(drive_, masks_, options_, recorded))
+      add_span(suspected, begin, end);
+    for (int round = 0; round < kRounds; ++round) {
+      WheelOdometry wheels = recorded;
+      for (const auto& [begin, end] : suspected) wheels.distrust(begin, end);
+      VoResult result = run_odometry(drive_, masks_, options_, &wheels, progress_);
+      const WheelSigns signs = find_wheel_signs(result, wheels, height_m_);
+      if (signs.scale) return std::nullopt;
+      std::vector<TimeSpan> wrong;
+      for (const SpanVerdict& verdict : judge_spans(suspected, result, recorded)) {
+        if (verdict.is_known && verdict.is_doubted)
+          wrong.push_back(verdict.span);
+        else
+          (verdict.is_known ? kept : kept_unknown).push_back(verdict.span);
+      }
+      const bool is_new = wrong.size() < suspected.size();
+      const auto more = without(without(signs.spans, kept), kept_unknown);
+      if (!is_new && more.empty())
+        return with_doubts(std::move(result), recorded, wrong, kept_unknown);
+      suspected = united(std::move(wrong), more);
+    }
+    return std::nullopt;
+  }
+
+  // Adds what is wrong with the wheels to the odometry that did without them there. Empty if too
+  // little is left of them.
+  [[nodiscard]] std::optional<VoResult> with_doubts(VoResult result,
+                                                    const WheelOdometry& recorded,
+                                                    const std::vector<TimeSpan>& wrong,
+                                                    const std::vector<TimeSpan>& unknown) const {
+    const WheelComparison comparison = compare_wheels_in(wrong, result, recorded);
+    if (!comparison.rest_is_useful()) return std::nullopt;
+    if (!wrong.empty())
+      result.doubts.push_back(describe_doubts(comparison, result, origin_ns(), false));
+    if (!unknown.empty()) result.doubts.push_back(describe_unknown(unknown, origin_ns()));
+    return result;
+  }
+
+  // The cameras lose their way without the wheels: these stay in use, and the doubts are stated.
+  [[nodiscard]] VoResult with_doubtful_wheels(const VoResult& sight,
+                                              const WheelOdometry& wheels,
+                                              const WheelComparison& comparison) const {
+    VoResult result = run_odometry(drive_, masks_, options_, &wheels, progress_);
+    if (comparison.doubts.empty()) return result;
+    SensorDoubt doubt = describe_doubts(comparison, sight, origin_ns(), comparison.doubts_all());
+    doubt.want =
         "what the cameras see within 4 sigma; the cameras lose their way without the wheels, "
         "which stay in use";
-    result.doubts.push_back(all);
+    result.doubts.push_back(std::move(doubt));
     return result;
   }
-  if (comparison.doubts_all()) {
-    sight.doubts.push_back(all);
+
+  // Leaves out the wheels where they contradict the cameras, or all of them.
+  [[nodiscard]] VoResult without_doubtful_wheels(VoResult sight,
+                                                 WheelOdometry wheels,
+                                                 const WheelComparison& comparison) const {
+    SensorDoubt all = describe_doubts(comparison, sight, origin_ns(), true);
+    if (!comparison.doubts_all()) {
+      const SensorDoubt some = describe_doubts(comparison, sight, origin_ns(), false);
+      for (const WheelDoubt& doubt : comparison.doubts)
+        wheels.distrust(doubt.span.first, doubt.span.second);
+      sight = {};
+      VoResult result = run_odometry(drive_, masks_, options_, &wheels, progress_);
+      if (comparison.doubts.empty()) return result;
+      if (!find_wheel_signs(result, wheels, height_m_).any()) {
+        result.doubts.push_back(some);
+        return result;
+      }
+      result = {};
+      sight = run_odometry(drive_, masks_, options_, nullptr, progress_);
+    }
+    sight.doubts.push_back(std::move(all));
     return sight;
   }
-  const SensorDoubt some = describe_doubts(comparison, sight, origin_ns, false);
-  for (const WheelDoubt& doubt : comparison.doubts)
-    wheels.distrust(doubt.span.first, doubt.span.second);
-  sight = {};
-  VoResult result = run_odometry(drive, masks, options, &wheels, progress);
-  if (comparison.doubts.empty()) return result;
-  if (!may_be_wrong(result, wheels, height)) {
-    result.doubts.push_back(some);
-    return result;
-  }
-  result = {};
-  result = alone();
-  result.doubts.push_back(all);
-  return result;
-}
+
+  const Drive& drive_;
+  const std::vector<cv::Mat>& masks_;
+  const TrackDriveOptions& options_;
+  const Progress& progress_;
+  double height_m_;
+};
 
 }  // namespace
 
@@ -90,16 +177,9 @@ VoResult track_drive(const Drive& drive,
     throw BadInput({Severity::kError, drive.folder().string(), 0, "cameras", "none",
                     "at least one camera to map with"});
   cv::setNumThreads(1);  // the images are already shared among our own threads
-  std::optional<WheelOdometry> wheels;
-  if (options.use_wheels && drive.wheel_model())
-    wheels.emplace(*drive.wheel_model(), drive.wheel_readings());
-  if (!wheels) return run_odometry(drive, masks, options, nullptr, progress);
-  const auto standstills = false_standstills(drive, masks, options, *wheels);
-  if (standstills.empty()) {
-    VoResult result = run_odometry(drive, masks, options, &*wheels, progress);
-    if (!may_be_wrong(result, *wheels, camera_height(drive.rig()))) return result;
-  }
-  return track_with_doubts(drive, masks, options, *wheels, progress);
+  if (!options.use_wheels || !drive.wheel_model())
+    return run_odometry(drive, masks, options, nullptr, progress);
+  return WheelTrial(drive, masks, options, progress).run();
 }
 
 }  // namespace roadbook

@@ -6,18 +6,12 @@
 #include <numbers>
 
 #include "base/se3.hpp"
+#include "vo/wheels/wheel_tolerance.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr double kSigmas = 4.0;
 constexpr std::array<std::size_t, 3> kWindows{1, 4, 16};  // keyframes
-constexpr int kFewestInliers = 20;
-// Honest wheels: radius and track are known to some percent, corners to some pixels.
-constexpr double kOfTurn = 0.04;
-constexpr double kOfWay = 0.05;
-constexpr double kLeastTurn_rad = 0.004;
-constexpr double kLeastWay_m = 0.02;
 
 // Motion over some keyframes: forwards [m] and turn [rad], by the cameras and by the wheels.
 struct Window {
@@ -37,12 +31,14 @@ struct Window {
   [[nodiscard]] bool doubts_turn() const {
     const double usual = kOfTurn * turn;
     return std::abs(turn_gap()) >
-           kSigmas * std::sqrt(covariance(2, 2) + kLeastTurn_rad * kLeastTurn_rad + usual * usual);
+           kWheelSigmas *
+               std::sqrt(covariance(2, 2) + kLeastTurn_rad * kLeastTurn_rad + usual * usual);
   }
   [[nodiscard]] bool doubts_way() const {
     const double usual = kOfWay * way / scale;
-    return std::abs(way_gap()) > kSigmas * std::sqrt(covariance.topLeftCorner<2, 2>().trace() +
-                                                     kLeastWay_m * kLeastWay_m + usual * usual);
+    return std::abs(way_gap()) >
+           kWheelSigmas * std::sqrt(covariance.topLeftCorner<2, 2>().trace() +
+                                    kLeastWay_m * kLeastWay_m + usual * usual);
   }
 };
 
@@ -121,8 +117,6 @@ void set_scales(const std::vector<Window>& typical, std::vector<Window>& windows
 // Doubted times of all windows. A long window that holds a doubted shorter one says nothing more.
 std::vector<TimeSpan> doubted_spans(const VoResult& sight,
                                     const std::array<std::vector<Window>, kWindows.size()>& all) {
-  constexpr std::int64_t kMarginNs = 150'000'000;  // in which a fault begins and ends
-  constexpr std::int64_t kApartNs = 500'000'000;
   std::vector<std::uint8_t> doubted(sight.keyframes.size(), 0);  // motion from the one before
   for (const auto& windows : all) {
     const std::vector<std::uint8_t> shorter = doubted;
@@ -136,15 +130,8 @@ std::vector<TimeSpan> doubted_spans(const VoResult& sight,
     }
   }
   std::vector<TimeSpan> spans;
-  for (std::size_t k = 1; k < doubted.size(); ++k) {
-    if (doubted[k] == 0) continue;
-    const std::int64_t begin = sight.keyframes[k - 1].t_ns - kMarginNs;
-    const std::int64_t end = sight.keyframes[k].t_ns + kMarginNs;
-    if (!spans.empty() && begin <= spans.back().second + kApartNs)
-      spans.back().second = end;
-    else
-      spans.emplace_back(begin, end);
-  }
+  for (std::size_t k = 1; k < doubted.size(); ++k)
+    if (doubted[k] != 0) add_span(spans, sight.keyframes[k - 1].t_ns, sight.keyframes[k].t_ns);
   return spans;
 }
 
@@ -174,21 +161,14 @@ std::optional<double> median_turn_factor(const std::vector<Window>& windows) {
   return median(std::move(factors));
 }
 
-std::optional<double> median_way_factor(const std::vector<Window>& windows, double ground) {
+std::optional<double> median_way_ratio(const std::vector<Window>& windows) {
   constexpr double kMoves_m = 0.1;
   constexpr std::size_t kFewest = 10;
   std::vector<double> factors;
   for (const Window& w : windows)
-    if (std::abs(w.way) > kMoves_m) factors.push_back(w.wheel_way / (ground * w.way));
+    if (std::abs(w.way) > kMoves_m) factors.push_back(w.wheel_way / w.way);
   if (factors.size() < kFewest) return std::nullopt;
   return median(std::move(factors));
-}
-
-// The images showed enough corners, but hardly one agreed with a motion near that of the wheels.
-bool is_lost(const VoKeyframe& keyframe) {
-  std::size_t corners = 0;
-  for (const Features& features : keyframe.features) corners += features.size();
-  return keyframe.inliers < kFewestInliers && corners >= 4 * kFewestInliers;
 }
 
 }  // namespace
@@ -202,31 +182,12 @@ bool WheelComparison::doubts_all() const {
   return doubted_m > kWayShare * compared_m || doubted_rad > kTurnShare * compared_rad;
 }
 
-bool may_be_wrong(const VoResult& odometry, const WheelOdometry& wheels, double camera_height_m) {
-  constexpr std::size_t kSummed = 8;  // keyframes
-  constexpr double kScaleOff = 0.08;
-  const auto& keyframes = odometry.keyframes;
-  double turned = 0.0;
-  double beyond = 0.0;
-  for (std::size_t k = 1; k < keyframes.size(); ++k) {
-    if (!keyframes[k].wheels) continue;
-    if (k > 1 && is_lost(keyframes[k])) return true;
-    beyond += keyframes[k].turn_beyond_wheels_rad;
-    turned += keyframes[k].wheels->motion.z();
-    if (k > kSummed && keyframes[k - kSummed].wheels) {
-      beyond -= keyframes[k - kSummed].turn_beyond_wheels_rad;
-      turned -= keyframes[k - kSummed].wheels->motion.z();
-    }
-    const auto moved = k >= kSummed ? wheels.between(keyframes[k - kSummed].t_ns, keyframes[k].t_ns)
-                                    : std::nullopt;
-    if (!moved) continue;
-    const double usual = kOfTurn * turned;
-    if (std::abs(beyond) > kSigmas * std::sqrt(moved->covariance(2, 2) +
-                                               kLeastTurn_rad * kLeastTurn_rad + usual * usual))
-      return true;
-  }
-  const auto ground = ground_factor(odometry, camera_height_m);
-  return ground && std::abs(std::log(*ground)) > kScaleOff;
+bool WheelComparison::rest_is_useful() const {
+  constexpr double kWayShare = 0.3;
+  constexpr double kTurnShare = 0.3;
+  constexpr double kFewTurns_rad = 0.3;  // a drive so straight that turns say nothing
+  return compared_m - doubted_m >= kWayShare * compared_m &&
+         (compared_rad < kFewTurns_rad || compared_rad - doubted_rad >= kTurnShare * compared_rad);
 }
 
 double known_share(const VoResult& sight,
@@ -253,7 +214,7 @@ double known_share(const VoResult& sight,
 
 WheelComparison compare_wheels(const VoResult& sight,
                                const WheelOdometry& wheels,
-                               double camera_height_m) {
+                               std::optional<double> ground) {
   std::array<std::vector<Window>, kWindows.size()> all;
   for (std::size_t i = 0; i < kWindows.size(); ++i) all[i] = windows_of(sight, wheels, kWindows[i]);
   const std::vector<Window> typical = all[1];
@@ -262,8 +223,42 @@ WheelComparison compare_wheels(const VoResult& sight,
   for (const TimeSpan& span : doubted_spans(sight, all)) result.doubts.push_back({span});
   measure(sight, all[0], result);
   result.turn_factor = median_turn_factor(all[1]);
-  if (const auto ground = ground_factor(sight, camera_height_m))
-    result.way_factor = median_way_factor(all[1], *ground);
+  result.way_ratio = median_way_ratio(all[1]);
+  if (result.way_ratio && ground) result.way_factor = *result.way_ratio / *ground;
+  return result;
+}
+
+std::vector<SpanVerdict> judge_spans(const std::vector<TimeSpan>& spans,
+                                     const VoResult& odometry,
+                                     const WheelOdometry& recorded) {
+  const auto& keyframes = odometry.keyframes;
+  const auto overlap = [&](std::size_t first, std::size_t last, const TimeSpan& span) {
+    return keyframes[first].t_ns < span.second && span.first < keyframes[last].t_ns;
+  };
+  std::vector<SpanVerdict> verdicts;
+  for (const TimeSpan& span : spans) {
+    SpanVerdict verdict{span, true, false};
+    for (std::size_t k = 1; k < keyframes.size(); ++k)
+      if (overlap(k - 1, k, span))
+        verdict.is_known =
+            verdict.is_known && !keyframes[k].after_gap && keyframes[k].inliers >= kFewestInliers;
+    verdicts.push_back(verdict);
+  }
+  for (const std::size_t length : kWindows)
+    for (const Window& w : windows_of(odometry, recorded, length)) {
+      if (!w.doubts_turn() && !w.doubts_way()) continue;
+      for (SpanVerdict& verdict : verdicts)
+        if (overlap(w.first, w.last, verdict.span)) verdict.is_doubted = true;
+    }
+  return verdicts;
+}
+
+WheelComparison compare_wheels_in(const std::vector<TimeSpan>& spans,
+                                  const VoResult& odometry,
+                                  const WheelOdometry& recorded) {
+  WheelComparison result;
+  for (const TimeSpan& span : spans) result.doubts.push_back({span});
+  measure(odometry, windows_of(odometry, recorded, 1), result);
   return result;
 }
 

@@ -2,19 +2,16 @@
 
 #include <cstdint>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "sensors/wheels.hpp"
 #include "vo/keyframe_track.hpp"
+#include "vo/wheels/time_span.hpp"
 
 namespace roadbook {
 
-// Comparison of the wheels with odometry, in two steps. An odometry that used the wheels follows
-// them, so that it shows only whether they may be wrong (`may_be_wrong`). An odometry of the
-// cameras alone then shows where and by how much (`compare_wheels`).
-
-using TimeSpan = std::pair<std::int64_t, std::int64_t>;  ///< first and last time [ns]
+// Comparison of the wheels with odometry of the cameras alone: where they are wrong and by how
+// much.
 
 /// A time in which the wheels contradict the cameras by more than four standard deviations.
 struct WheelDoubt {
@@ -31,20 +28,17 @@ struct WheelComparison {
   double doubted_rad = 0.0;        ///< of it
   /// Median of the turns by the wheels over the turns by the cameras. Empty without turns.
   std::optional<double> turn_factor;
+  /// Median of the ways by the wheels over the ways by the cameras, in the cameras' lengths.
+  std::optional<double> way_ratio;
   /// Way by the wheels over the way by the cameras, whose scale is their height over the ground.
   /// Empty without enough ground.
   std::optional<double> way_factor;
 
   /// The wheels are wrong in so much of the drive that the rest is better left out.
   [[nodiscard]] bool doubts_all() const;
+  /// Enough way and turn lies beside the doubts to say that the wheels are right there.
+  [[nodiscard]] bool rest_is_useful() const;
 };
-
-/// Says whether `odometry`, which used the wheels, shows a sign that they are wrong: keyframes
-/// whose corners did not agree with any motion near that of the wheels; turns that the cameras
-/// alone see otherwise; the ground at a wrong distance below the cameras.
-[[nodiscard]] bool may_be_wrong(const VoResult& odometry,
-                                const WheelOdometry& wheels,
-                                double camera_height_m);
 
 /// Share of the time in which the vehicle moves over which `sight`, an odometry of the cameras
 /// alone, knows the motion. The vehicle moves where the wheels roll or the cameras know a motion.
@@ -56,10 +50,29 @@ struct WheelComparison {
 /// Compares the wheels with the motions of `sight`, an odometry of the cameras alone, over windows
 /// of 1, 4 and 16 keyframes. Wheels may be off by what is usual: their noise, 4 % of the turn (1
 /// sigma: radii and track) and 5 % of the way. `sight` knows lengths up to a factor that changes
-/// slowly: only changes of the ratio over some metres are seen in a window.
+/// slowly: only changes of the ratio over some metres are seen in a window. `ground`: ground_factor
+/// of `sight`.
 [[nodiscard]] WheelComparison compare_wheels(const VoResult& sight,
                                              const WheelOdometry& wheels,
-                                             double camera_height_m);
+                                             std::optional<double> ground);
+
+/// What an odometry says of the wheels in a time for which it had to do without them.
+struct SpanVerdict {
+  TimeSpan span;
+  bool is_known = false;    ///< the cameras know all motions in it
+  bool is_doubted = false;  ///< the wheels differ from them by more than four standard deviations
+};
+
+/// Judges times in which `odometry` did not use the wheels, but did beside them. `recorded`: the
+/// wheels without any distrust.
+[[nodiscard]] std::vector<SpanVerdict> judge_spans(const std::vector<TimeSpan>& spans,
+                                                   const VoResult& odometry,
+                                                   const WheelOdometry& recorded);
+
+/// Sizes of the doubts in such times.
+[[nodiscard]] WheelComparison compare_wheels_in(const std::vector<TimeSpan>& spans,
+                                                const VoResult& odometry,
+                                                const WheelOdometry& recorded);
 
 /// Factor on the lengths of `odometry` that puts the ground at the cameras' height below them.
 /// Empty if too little ground is seen.

@@ -75,4 +75,33 @@ SensorDoubt describe_doubts(const WheelComparison& comparison,
   return result;
 }
 
+SensorDoubt describe_correction(const WheelCorrection& correction,
+                                const WheelComparison& comparison,
+                                const VoResult& sight,
+                                std::int64_t origin_ns) {
+  SensorDoubt result;
+  result.sensor = "wheels0";
+  result.t_begin_ns = sight.keyframes.front().t_ns;
+  result.t_end_ns = sight.keyframes.back().t_ns;
+  result.got = of_all(comparison) + " " + span_text(result.t_begin_ns, result.t_end_ns, origin_ns) +
+               ", as with " + correction.text();
+  result.want = "what the cameras see within 4 sigma; mapped with the wheels corrected for that";
+  return result;
+}
+
+SensorDoubt describe_unknown(const std::vector<TimeSpan>& spans, std::int64_t origin_ns) {
+  constexpr std::size_t kNamed = 3;
+  SensorDoubt result;
+  result.sensor = "wheels0";
+  result.t_begin_ns = spans.front().first;
+  result.t_end_ns = spans.back().second;
+  for (std::size_t i = 0; i < spans.size() && i < kNamed; ++i)
+    result.got += (i > 0 ? "; " : "") + span_text(spans[i].first, spans[i].second, origin_ns);
+  if (spans.size() > kNamed)
+    result.got += "; and " + std::to_string(spans.size() - kNamed) + " more such times";
+  result.got += " a motion that few corners agree with";
+  result.want = "what the cameras see; they lose their way there, and the wheels stay in use";
+  return result;
+}
+
 }  // namespace roadbook

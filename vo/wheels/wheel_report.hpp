@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "vo/keyframe_track.hpp"
+#include "vo/wheels/wheel_correction.hpp"
 #include "vo/wheels/wheel_doubts.hpp"
 
 namespace roadbook {
@@ -13,5 +15,16 @@ namespace roadbook {
                                           const VoResult& sight,
                                           std::int64_t origin_ns,
                                           bool all);
+
+/// Puts a mistake of wiring or calibration into words. `comparison`: of the wheels as recorded.
+[[nodiscard]] SensorDoubt describe_correction(const WheelCorrection& correction,
+                                              const WheelComparison& comparison,
+                                              const VoResult& sight,
+                                              std::int64_t origin_ns);
+
+/// Puts times into words in which corners fit no motion near that of the wheels, and the cameras
+/// alone know none, so that the wheels stayed in use.
+[[nodiscard]] SensorDoubt describe_unknown(const std::vector<TimeSpan>& spans,
+                                           std::int64_t origin_ns);
 
 }  // namespace roadbook
