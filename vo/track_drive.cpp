@@ -1,5 +1,6 @@
 #include "vo/track_drive.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -155,8 +156,21 @@ class WheelTrial {
       result = {};
       sight = run_odometry(drive_, masks_, options_, nullptr, progress_);
     }
+    sight = evenly_spaced(std::move(sight));
     sight.doubts.push_back(std::move(all));
     return sight;
+  }
+
+  // Cameras alone space keyframes by their own scale. If the ground says that it is another, they
+  // run again with the spacing that it gives.
+  [[nodiscard]] VoResult evenly_spaced(VoResult sight) const {
+    constexpr double kUneven = 0.1;  // as a logarithm
+    const auto ground = ground_factor(sight, height_m_);
+    if (!ground || std::abs(std::log(*ground)) < kUneven) return sight;
+    TrackDriveOptions even = options_;
+    even.odometry.spacing_m /= *ground;
+    sight = {};
+    return run_odometry(drive_, masks_, even, nullptr, progress_);
   }
 
   const Drive& drive_;

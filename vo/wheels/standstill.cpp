@@ -21,15 +21,20 @@ struct StandingPair {
   std::size_t second = 0;
 };
 
+bool wheels_stand(const Drive& drive,
+                  const WheelOdometry& wheels,
+                  std::size_t from,
+                  std::size_t to) {
+  const auto moved = wheels.between(drive.frame_stamp_ns(from), drive.frame_stamp_ns(to));
+  return moved && moved->distance_m < 0.1 && moved->motion.head<2>().norm() < kStandsM &&
+         std::abs(moved->motion.z()) < kStandsRad;
+}
+
 std::vector<StandingPair> standing_pairs(const Drive& drive, const WheelOdometry& wheels) {
   std::vector<StandingPair> pairs;
   std::size_t from = 0;
   for (std::size_t i = 1; i < drive.frame_count(); ++i) {
-    const auto moved = wheels.between(drive.frame_stamp_ns(from), drive.frame_stamp_ns(i));
-    const bool stands = moved && moved->distance_m < 0.1 &&
-                        moved->motion.head<2>().norm() < kStandsM &&
-                        std::abs(moved->motion.z()) < kStandsRad;
-    if (!stands) {
+    if (!wheels_stand(drive, wheels, from, i)) {
       from = i;
     } else if (drive.frame_stamp_ns(i) - drive.frame_stamp_ns(from) >= kCompareNs) {
       pairs.push_back({from, i});
@@ -80,22 +85,27 @@ std::vector<std::pair<std::int64_t, std::int64_t>> false_standstills(
   std::vector<std::pair<std::int64_t, std::int64_t>> spans;
   const Rig half_rig = half_size(drive.rig());
   std::optional<std::size_t> described;
-  FrameFeatures last;
+  FrameFeatures before;
   const auto features_of = [&](std::size_t frame) {
     return std::move(describe_frames(drive, {frame}, 0, 1, masks, options).front());
   };
   for (const StandingPair& pair : standing_pairs(drive, wheels)) {
-    if (described != pair.first) last = features_of(pair.first);
+    if (described != pair.first) before = features_of(pair.first);
     FrameFeatures now = features_of(pair.second);
-    if (images_move(half_rig, last, now)) {
+    if (images_move(half_rig, before, now)) {
       const std::int64_t begin = drive.frame_stamp_ns(pair.first);
-      const std::int64_t end = drive.frame_stamp_ns(pair.second);
-      if (!spans.empty() && spans.back().second == begin)
-        spans.back().second = end;
+      std::size_t last = pair.second;  // the wheels stand up to 0.4 s longer than the last pair
+      while (last + 1 < drive.frame_count() &&
+             drive.frame_stamp_ns(last + 1) < drive.frame_stamp_ns(pair.second) + kCompareNs &&
+             wheels_stand(drive, wheels, pair.second, last + 1))
+        ++last;
+      const std::int64_t end = drive.frame_stamp_ns(last);
+      if (!spans.empty() && spans.back().second >= begin)
+        spans.back().second = std::max(spans.back().second, end);
       else
         spans.emplace_back(begin, end);
     }
-    last = std::move(now);
+    before = std::move(now);
     described = pair.second;
   }
   return spans;
