@@ -1,6 +1,5 @@
 #include "drive/turn_check.hpp"
 
-#include <cmath>
 #include <sstream>
 
 #include "drive/wheel_counter.hpp"
@@ -8,9 +7,8 @@
 namespace roadbook {
 
 void TurnCheck::add(double turn_rad, double dt_s, std::int64_t line) {
-  constexpr double kNoise_m = 0.5;  // noise of rows that follow each other closely
   ++rows_;
-  if (std::abs(turn_rad) * radius_m_ <= kFastestCar_m_s * dt_s + kNoise_m) return;
+  if (!is_faster_than_cars(turn_rad * radius_m_, dt_s)) return;
   ++count_;
   if (first_.size() > ProblemList::kMaxPerFile) return;
   std::ostringstream got;

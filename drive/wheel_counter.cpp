@@ -125,4 +125,9 @@ std::optional<Problem> CounterReport::problem(const std::string& file,
       "a count that goes on"};
 }
 
+bool is_faster_than_cars(double way_m, double dt_s) {
+  constexpr double kNoise_m = 0.5;
+  return std::abs(way_m) > kFastestCar_m_s * dt_s + kNoise_m;
+}
+
 }  // namespace roadbook

@@ -84,5 +84,8 @@ class CounterReport {
 
 /// Faster than any car that makes maps; a wheel that turned faster is a damaged table.
 inline constexpr double kFastestCar_m_s = 70.0;
+/// Says whether a wheel that rolled so far between two rows was faster than any car. Rows that
+/// follow each other closely are noisy: half a metre is allowed.
+[[nodiscard]] bool is_faster_than_cars(double way_m, double dt_s);
 
 }  // namespace roadbook

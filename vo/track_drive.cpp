@@ -1,5 +1,6 @@
 #include "vo/track_drive.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <opencv2/core.hpp>
@@ -8,8 +9,9 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/se3.hpp"
 #include "vo/odometry_run.hpp"
-#include "vo/wheels/standstill.hpp"
+#include "vo/wheels/false_times.hpp"
 #include "vo/wheels/wheel_correction.hpp"
 #include "vo/wheels/wheel_doubts.hpp"
 #include "vo/wheels/wheel_report.hpp"
@@ -37,6 +39,29 @@ double share_known_by(const VoResult& sight, const Drive& drive, const WheelOdom
   return known_share(sight, wheels, frames_ns);
 }
 
+WheelOdometry possible_wheels(const WheelModel& model, const std::vector<WheelReading>& readings) {
+  WheelOdometry wheels(model, readings);
+  for (const auto& [begin, end] : impossible_times(model, readings)) wheels.distrust(begin, end);
+  return wheels;
+}
+
+// Mean distance of successive keyframes [m, odometry's scale] that no turn made necessary.
+std::optional<double> straight_step_m(const VoResult& odometry, double turn_rad) {
+  constexpr std::size_t kFewest = 20;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t k = 1; k < odometry.keyframes.size(); ++k) {
+    if (odometry.keyframes[k].after_gap) continue;
+    const Eigen::Isometry3d T =
+        odometry.keyframes[k - 1].T_odom_vehicle.inverse() * odometry.keyframes[k].T_odom_vehicle;
+    if (std::abs(heading_of(T)) > 0.5 * turn_rad) continue;
+    sum += T.translation().norm();
+    ++count;
+  }
+  if (count < kFewest || !(sum > 0.0)) return std::nullopt;
+  return sum / static_cast<double>(count);
+}
+
 // The wheels of a drive, and the odometry with and without them.
 class WheelTrial {
  public:
@@ -54,7 +79,7 @@ class WheelTrial {
     const WheelModel& model = *drive_.wheel_model();
     if (auto result = with_sound_times(model, drive_.wheel_readings())) return std::move(*result);
     VoResult sight = run_odometry(drive_, masks_, options_, nullptr, progress_);
-    const WheelOdometry wheels(model, drive_.wheel_readings());
+    const WheelOdometry wheels = possible_wheels(model, drive_.wheel_readings());
     const double known = sight.keyframes.size() < 2 ? 0.0 : share_known_by(sight, drive_, wheels);
     if (known < kAskedShare) return run_odometry(drive_, masks_, options_, &wheels, progress_);
     const auto ground = ground_factor(sight, height_m_);
@@ -81,7 +106,7 @@ class WheelTrial {
   [[nodiscard]] std::optional<VoResult> with_sound_times(
       const WheelModel& model, const std::vector<WheelReading>& readings) const {
     constexpr int kRounds = 4;
-    const WheelOdometry recorded(model, readings);
+    const WheelOdometry recorded = possible_wheels(model, readings);
     std::vector<TimeSpan> suspected;  // not used in the next round
     std::vector<TimeSpan> kept;       // suspected before, and used since
     std::vector<TimeSpan> kept_unknown;
@@ -161,14 +186,18 @@ class WheelTrial {
     return sight;
   }
 
-  // Cameras alone space keyframes by their own scale. If the ground says that it is another, they
-  // run again with the spacing that it gives.
+  // Cameras alone space keyframes by their own scale, and carry no distance over from one to the
+  // next. If the ground says that the spacing is another than wanted, they run again.
   [[nodiscard]] VoResult evenly_spaced(VoResult sight) const {
     constexpr double kUneven = 0.1;  // as a logarithm
+    constexpr double kMost = 2.0;
     const auto ground = ground_factor(sight, height_m_);
-    if (!ground || std::abs(std::log(*ground)) < kUneven) return sight;
+    const auto step_m = straight_step_m(sight, options_.odometry.turn_rad);
+    if (!ground || !step_m) return sight;
+    const double factor = options_.odometry.spacing_m / (*ground * *step_m);
+    if (std::abs(std::log(factor)) < kUneven) return sight;
     TrackDriveOptions even = options_;
-    even.odometry.spacing_m /= *ground;
+    even.odometry.spacing_m *= std::clamp(factor, 1.0 / kMost, kMost);
     sight = {};
     return run_odometry(drive_, masks_, even, nullptr, progress_);
   }

@@ -30,6 +30,10 @@ struct FaultTally {
     return static_cast<std::size_t>(
         std::count_if(runs.begin(), runs.end(), [](const RobustnessRun& r) { return r.is_named; }));
   }
+  [[nodiscard]] std::size_t named_with_cause() const {
+    return static_cast<std::size_t>(std::count_if(
+        runs.begin(), runs.end(), [](const RobustnessRun& r) { return r.names_cause; }));
+  }
   /// NaN without a map.
   [[nodiscard]] double largest_ratio() const {
     double largest = std::nan("");
@@ -64,6 +68,7 @@ ordered_json run_json(const RobustnessRun& run) {
   return {{"seed", run.seed},
           {"outcome", name_of(run.outcome)},
           {"named", run.is_named},
+          {"cause_named", run.names_cause},
           {"error_ratio", number_or_null(run.error_ratio)},
           {"mapped_share", run.mapped_share},
           {"messages", run.messages}};
@@ -80,6 +85,7 @@ ordered_json fault_json(const FaultTally& tally) {
           {"wrong_said", tally.count(RobustnessOutcome::kWrongSaid)},
           {"wrong_silent", tally.count(RobustnessOutcome::kWrongSilent)},
           {"named", tally.named()},
+          {"cause_named", tally.named_with_cause()},
           {"largest_error_ratio", number_or_null(tally.largest_ratio())},
           {"runs", runs}};
 }
@@ -92,7 +98,8 @@ void say_fault(const FaultTally& tally, Console& console) {
               std::to_string(tally.count(RobustnessOutcome::kRefusedElse)) + ", wrong but said " +
               std::to_string(tally.count(RobustnessOutcome::kWrongSaid)) + ", wrong and silent " +
               std::to_string(tally.count(RobustnessOutcome::kWrongSilent)) + drives + "; named " +
-              std::to_string(tally.named()) + drives + "; largest error " +
+              std::to_string(tally.named()) + drives + ", cause named " +
+              std::to_string(tally.named_with_cause()) + drives + "; largest error " +
               fixed(tally.largest_ratio(), 1) + " times that of the clean drive");
   std::cout.flush();
 }

@@ -237,11 +237,15 @@ std::vector<SpanVerdict> judge_spans(const std::vector<TimeSpan>& spans,
   };
   std::vector<SpanVerdict> verdicts;
   for (const TimeSpan& span : spans) {
-    SpanVerdict verdict{span, true, false};
-    for (std::size_t k = 1; k < keyframes.size(); ++k)
-      if (overlap(k - 1, k, span))
-        verdict.is_known =
-            verdict.is_known && !keyframes[k].after_gap && keyframes[k].inliers >= kFewestInliers;
+    std::int64_t known_ns = 0;
+    std::int64_t all_ns = 0;
+    for (std::size_t k = 1; k < keyframes.size(); ++k) {
+      if (!overlap(k - 1, k, span)) continue;
+      const std::int64_t ns = keyframes[k].t_ns - keyframes[k - 1].t_ns;
+      all_ns += ns;
+      if (!keyframes[k].after_gap && keyframes[k].inliers >= kFewestInliers) known_ns += ns;
+    }
+    const SpanVerdict verdict{span, 5 * known_ns >= 4 * all_ns, false};
     verdicts.push_back(verdict);
   }
   for (const std::size_t length : kWindows)

@@ -59,7 +59,7 @@ struct WheelComparison {
 /// What an odometry says of the wheels in a time for which it had to do without them.
 struct SpanVerdict {
   TimeSpan span;
-  bool is_known = false;    ///< the cameras know all motions in it
+  bool is_known = false;    ///< the cameras know the motions in four fifths of it
   bool is_doubted = false;  ///< the wheels differ from them by more than four standard deviations
 };
 

@@ -25,11 +25,13 @@ double drawn_sign(Random& random) { return random.below(2) == 0 ? 1.0 : -1.0; }
 
 using CameraChange = std::function<void(const fs::path& camera, Random&)>;
 
-DriveFault one_camera(const std::string& name, const CameraChange& change) {
+DriveFault one_camera(const std::string& name,
+                      const std::vector<std::string>& causes,
+                      const CameraChange& change) {
   return {"camera: " + name, [=](const fs::path& drive, Random& random) {
             const std::string camera = drawn_camera(random);
             change(drive / camera, random);
-            return PlantedFault{{camera}};
+            return PlantedFault{{camera}, causes};
           }};
 }
 
@@ -174,23 +176,24 @@ DriveFault swapped() {
               fs::rename(second / part, first / part);
               fs::rename(drive / "moving", second / part);
             }
-            return PlantedFault{{camera_name(a), camera_name(b)}};
+            return PlantedFault{{camera_name(a), camera_name(b)},
+                                {"look exchanged", "fit the calibration of"}};
           }};
 }
 
 }  // namespace
 
 std::vector<DriveFault> camera_faults() {
-  return {one_camera("focal length 2 % wrong", scale_focal),
-          one_camera("turned 2 degrees", turn),
+  return {one_camera("focal length 2 % wrong", {"focal length"}, scale_focal),
+          one_camera("turned 2 degrees", {"rotation"}, turn),
           swapped(),
-          one_camera("3.5 km from the car", move_away),
+          one_camera("3.5 km from the car", {"position"}, move_away),
           all_cameras("T_BS inverted", invert),
           all_cameras("intrinsics of twice the size", double_intrinsics),
-          one_camera("frozen image", freeze),
-          one_camera("1 us late", late(1'000)),
-          one_camera("20 ms late", late(20'000'000)),
-          one_camera("80 ms late", late(80'000'000)),
+          one_camera("frozen image", {"repeat"}, freeze),
+          one_camera("1 us late", {}, late(1'000)),
+          one_camera("20 ms late", {"time_offset"}, late(20'000'000)),
+          one_camera("80 ms late", {"time_offset"}, late(80'000'000)),
           all_cameras("moving things over half the view", cover_with_moving_things),
           all_cameras("black", one_grey(0.0)),
           all_cameras("white", one_grey(255.0)),

@@ -11,9 +11,11 @@ namespace roadbook {
 
 // Faults of recordings and of calibrations, as users make them. Each changes the files of a drive.
 
-/// What was damaged. A word about any of `sensors` counts as a word about the fault.
+/// What was damaged. A message that holds one of `sensors` names the sensor; one that also holds
+/// one of `causes` names the cause.
 struct PlantedFault {
   std::vector<std::string> sensors;  ///< folders of the drive: "wheels0", "cam2"
+  std::vector<std::string> causes{}; ///< "focal length"; empty: the sensor is all that can be said
 };
 
 /// One kind of fault. The random engine draws the side, the camera, the time and the sign.

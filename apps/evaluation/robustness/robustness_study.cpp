@@ -60,12 +60,9 @@ void copy_drive(const fs::path& from, const fs::path& to) {
   fs::copy(from, to, fs::copy_options::recursive | fs::copy_options::create_hard_links);
 }
 
-bool names_any(const std::vector<std::string>& messages, const std::vector<std::string>& sensors) {
-  return std::any_of(messages.begin(), messages.end(), [&](const std::string& line) {
-    return std::any_of(sensors.begin(), sensors.end(), [&](const std::string& sensor) {
-      return line.find(sensor) != std::string::npos;
-    });
-  });
+bool holds_any(const std::string& line, const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](const std::string& word) { return line.find(word) != std::string::npos; });
 }
 
 RobustnessOutcome outcome_of(const Mapped& mapped, const RobustnessRun& run) {
@@ -91,7 +88,11 @@ RobustnessRun run_fault(const fs::path& folder,
   for (const std::string& line : mapped.messages)
     if (std::find(clean.messages.begin(), clean.messages.end(), line) == clean.messages.end())
       run.messages.push_back(line);
-  run.is_named = names_any(run.messages, planted.sensors);
+  for (const std::string& line : run.messages) {
+    if (!holds_any(line, planted.sensors)) continue;
+    run.is_named = true;
+    if (planted.causes.empty() || holds_any(line, planted.causes)) run.names_cause = true;
+  }
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   run.error_ratio =
       mapped.summary ? mapped.summary->ate_median_m.value_or(kUnknown) / clean.error_m : kUnknown;

@@ -34,6 +34,7 @@ struct RobustnessRun {
   std::uint64_t seed = 0;
   RobustnessOutcome outcome = RobustnessOutcome::kRight;
   bool is_named = false;              ///< a message names the sensor
+  bool names_cause = false;           ///< a message names the sensor and the cause
   double error_ratio = 0.0;           ///< to the clean drive's median error; NaN without a map
   double mapped_share = 0.0;          ///< keyframes, relative to those of the clean drive
   std::vector<std::string> messages;  ///< that the clean drive does not give, one line each

@@ -20,4 +20,9 @@ namespace roadbook {
     const TrackDriveOptions& options,
     const WheelOdometry& wheels);
 
+/// Returns the times [ns] between two readings of the wheels that no car can drive: a lost or a
+/// wrong count.
+[[nodiscard]] std::vector<std::pair<std::int64_t, std::int64_t>> impossible_times(
+    const WheelModel& model, const std::vector<WheelReading>& readings);
+
 }  // namespace roadbook

@@ -1,9 +1,10 @@
-#include "vo/wheels/standstill.hpp"
+#include "vo/wheels/false_times.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "drive/wheel_counter.hpp"
 #include "vo/odometry_run.hpp"
 #include "vo/odometry_state.hpp"
 #include "vo/track_matching.hpp"
@@ -107,6 +108,25 @@ std::vector<std::pair<std::int64_t, std::int64_t>> false_standstills(
     }
     before = std::move(now);
     described = pair.second;
+  }
+  return spans;
+}
+
+std::vector<std::pair<std::int64_t, std::int64_t>> impossible_times(
+    const WheelModel& model, const std::vector<WheelReading>& readings) {
+  std::vector<std::pair<std::int64_t, std::int64_t>> spans;
+  const auto offset_ns = static_cast<std::int64_t>(std::llround(model.time_offset_s * 1e9));
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    const WheelReading& a = readings[i - 1];
+    const WheelReading& b = readings[i];
+    const double dt_s = static_cast<double>(b.t_ns - a.t_ns) * 1e-9;
+    if (!is_faster_than_cars((b.left_angle_rad - a.left_angle_rad) * model.radius_left_m, dt_s) &&
+        !is_faster_than_cars((b.right_angle_rad - a.right_angle_rad) * model.radius_right_m, dt_s))
+      continue;
+    if (!spans.empty() && spans.back().second == a.t_ns + offset_ns)
+      spans.back().second = b.t_ns + offset_ns;
+    else
+      spans.emplace_back(a.t_ns + offset_ns, b.t_ns + offset_ns);
   }
   return spans;
 }
