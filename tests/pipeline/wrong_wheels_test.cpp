@@ -84,7 +84,7 @@ Mapped mapped(const fs::path& drive) {
 }
 
 // Sound wheels are not doubted. Wheels that stick, stop for good or are swapped are: one warning
-// says when and by how much, and the map is bent by centimetres at most.
+// says when and by how much, and the map is hardly worse than that of sound wheels.
 TEST(WrongWheels, AreNamedAndDoNotBendTheMap) {
   const fs::path folder = test::fresh_folder("wrong_wheels");
   ScenarioOptions scenario;
@@ -104,21 +104,19 @@ TEST(WrongWheels, AreNamedAndDoNotBendTheMap) {
     SCOPED_TRACE(words);
     write_fault(folder / "drive", original.str(), fault);
     const Mapped map = mapped(folder / "drive");
-    // No loop closes in 14 s: where the cameras work alone, centimetres remain. Wheels that are
-    // believed bend this map by more than half a metre. Without wheels, keyframes are spaced by the
-    // cameras' own scale.
-    EXPECT_LT(map.ate_m, 0.1);
-    EXPECT_GT(map.keyframes, sound.keyframes * 2 / 5);
+    // Wheels that are believed bend this map by more than half a metre.
+    EXPECT_LT(map.ate_m, 1.5 * sound.ate_m);
+    EXPECT_GE(map.keyframes, sound.keyframes * 4 / 5);
     ASSERT_EQ(map.doubts.size(), 1U);
     EXPECT_NE(map.doubts[0].find(words), std::string::npos) << map.doubts[0];
   };
   judge([&](auto& rows) { hold(rows, kFirst, 75); }, "the cameras see");
-  judge([&](auto& rows) { hold(rows, kFirst, 10000); }, "mapped without the wheels");
+  judge([&](auto& rows) { hold(rows, kFirst, 10000); }, "mapped without the wheels there");
   judge(
       [](auto& rows) {
         for (WheelRow& row : rows) std::swap(row.left, row.right);
       },
-      "times what the cameras see");
+      "left and right exchanged");
 }
 
 }  // namespace
