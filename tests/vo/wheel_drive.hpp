@@ -59,7 +59,7 @@ inline VoResult sight_of() {
   return sight;
 }
 
-// Keeps angles as they were at `from_s` for some seconds; then they go on from there.
+// Keeps angles as they were at `from_s` for some seconds; then they continue from there.
 inline void hold(
     std::vector<WheelReading>& readings, double from_s, double seconds, bool left, bool right) {
   const auto first = static_cast<std::size_t>(from_s * 50.0);

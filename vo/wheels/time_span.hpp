@@ -9,8 +9,8 @@ namespace roadbook {
 using TimeSpan = std::pair<std::int64_t, std::int64_t>;  ///< first and last time [ns]
 
 /// Adds the motion between two keyframes to times that ascend by their beginning. A fault begins
-/// and ends some 0.15 s beside the keyframes that show it. Times less than half a second apart
-/// become one.
+/// and ends up to 0.15 s before and after the keyframes that show it. Times less than half a second
+/// apart become one.
 void add_span(std::vector<TimeSpan>& spans, std::int64_t from_ns, std::int64_t to_ns);
 
 /// Both sets of times as one: ascending, apart from each other.

@@ -37,7 +37,7 @@ Candidate judged(const WheelCorrection& correction,
 
 // The track width that gives the turns of the cameras. What a user mistakes is half and whole.
 std::optional<double> track_factor(const WheelComparison& comparison) {
-  constexpr double kUsual = 0.12;  // as a logarithm: wheels and cameras may differ by so much
+  constexpr double kUsual = 0.12;  // as a logarithm: the usual difference of wheels and cameras
   constexpr double kSame = 0.08;
   if (!comparison.turn_factor || !(*comparison.turn_factor > 0.0)) return std::nullopt;
   const double factor = std::log(*comparison.turn_factor);

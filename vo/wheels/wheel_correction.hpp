@@ -32,10 +32,10 @@ struct WheelCorrection {
                                                   const WheelCorrection& correction);
 
 /// The correction with which the wheels agree best with `sight`, an odometry of the cameras alone.
-/// Of two that agree alike, the one with fewer mistakes. Empty if the cameras doubt more than a
+/// Of two that agree equally, the one with fewer mistakes. Empty if the cameras doubt more than a
 /// third of the way or of the turn with each. The cameras know lengths by `ground` (their
-/// ground_factor) alone, to some percent; that tells a diameter from a radius. Without turns, a
-/// track width and exchanged wheels cannot show.
+/// ground_factor) alone, to some percent; that distinguishes a diameter from a radius. Without
+/// turns, a track width and exchanged wheels cannot show.
 [[nodiscard]] std::optional<WheelCorrection> find_wheel_correction(
     const VoResult& sight,
     const WheelModel& model,

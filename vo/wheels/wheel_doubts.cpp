@@ -86,7 +86,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Cameras' length over wheels' length where both move and turn alike, near each of `windows`.
+// Cameras' length over wheels' length where both move and turn equally, near each of `windows`.
 // The cameras' scale drifts slowly. Far from good windows, and without any, all of them tell it.
 void set_scales(const std::vector<Window>& typical, std::vector<Window>& windows) {
   constexpr std::size_t kReach = 30;  // keyframes

@@ -34,9 +34,9 @@ struct WheelComparison {
   /// Empty without enough ground.
   std::optional<double> way_factor;
 
-  /// The wheels are wrong in so much of the drive that the rest is better left out.
+  /// The wheels are wrong in most of the drive, so that the rest is left out too.
   [[nodiscard]] bool doubts_all() const;
-  /// Enough way and turn lies beside the doubts to say that the wheels are right there.
+  /// Enough way and turn lies outside the doubts to say that the wheels are right there.
   [[nodiscard]] bool rest_is_useful() const;
 };
 
@@ -56,15 +56,15 @@ struct WheelComparison {
                                              const WheelOdometry& wheels,
                                              std::optional<double> ground);
 
-/// What an odometry says of the wheels in a time for which it had to do without them.
+/// Judgement on the wheels in a time in which an odometry did not use them.
 struct SpanVerdict {
   TimeSpan span;
   bool is_known = false;    ///< the cameras know the motions in four fifths of it
   bool is_doubted = false;  ///< the wheels differ from them by more than four standard deviations
 };
 
-/// Judges times in which `odometry` did not use the wheels, but did beside them. `recorded`: the
-/// wheels without any distrust.
+/// Judges times in which `odometry` did not use the wheels, but used them before and after.
+/// `recorded`: the wheels without any distrust.
 [[nodiscard]] std::vector<SpanVerdict> judge_spans(const std::vector<TimeSpan>& spans,
                                                    const VoResult& odometry,
                                                    const WheelOdometry& recorded);

@@ -14,8 +14,8 @@ namespace roadbook {
 /// What was damaged. A message that holds one of `sensors` names the sensor; one that also holds
 /// one of `causes` names the cause.
 struct PlantedFault {
-  std::vector<std::string> sensors;  ///< folders of the drive: "wheels0", "cam2"
-  std::vector<std::string> causes{}; ///< "focal length"; empty: the sensor is all that can be said
+  std::vector<std::string> sensors;   ///< folders of the drive: "wheels0", "cam2"
+  std::vector<std::string> causes{};  ///< "focal length"; empty: the sensor is all that can be said
 };
 
 /// One kind of fault. The random engine draws the side, the camera, the time and the sign.
