@@ -38,7 +38,7 @@ inline std::vector<WheelReading> readings_of(const WheelModel& model) {
 }
 
 // What the cameras alone make of the drive: a keyframe every 0.1 s, right but for noise and scale.
-inline VoResult sight_of() {
+inline VoResult sight_of(double scale = kSightScale) {
   Random random(11, "sight");
   VoResult sight;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -50,8 +50,7 @@ inline VoResult sight_of() {
     sight.keyframes.push_back(keyframe);
     for (int part = 0; part < 5; ++part) {
       const double s = kSpeed_m_s * (0.1 * i + 0.02 * part);
-      T = T *
-          pose_from_planar(kSightScale * kSpeed_m_s * 0.02, 0.0, kSpeed_m_s * 0.02 * curvature(s));
+      T = T * pose_from_planar(scale * kSpeed_m_s * 0.02, 0.0, kSpeed_m_s * 0.02 * curvature(s));
     }
     T = T * pose_from_planar(random.normal(0.0, 0.003), random.normal(0.0, 0.003),
                              random.normal(0.0, 0.001));
