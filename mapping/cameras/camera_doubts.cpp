@@ -47,11 +47,16 @@ double significance(const CameraFit& fit) {
   return most;
 }
 
-// Positions and principal points differ little from turns and poses.
 double least_sigmas(CameraParameter parameter, const CameraDoubtOptions& options) {
-  const bool is_weak =
-      parameter == CameraParameter::kPosition || parameter == CameraParameter::kCentre;
-  return is_weak ? options.min_sigmas_weak : options.min_sigmas;
+  switch (parameter) {
+    case CameraParameter::kCentre:
+    case CameraParameter::kPosition:
+      return options.min_sigmas_weak;  // they differ little from turns and poses
+    case CameraParameter::kDelay:
+      return options.min_sigmas_delay;
+    default:
+      return options.min_sigmas;
+  }
 }
 
 // The fits that matter and are no chance, likeliest first: those that explain nearly as much as the

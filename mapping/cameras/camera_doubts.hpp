@@ -38,12 +38,13 @@ struct CameraDoubtOptions {
   double centre_share = 0.012;  ///< of the focal length
   double position_m = 0.15;
   double delay_s = 0.010;
-  double min_sigmas = 4.0;       ///< a smaller effect may be chance
-  double min_sigmas_weak = 6.0;  ///< of position and principal point
-  double min_gain = 0.002;       ///< share of the misfit that the effect explains
-  double as_likely = 0.85;       ///< another parameter with this share of the gain is named too
-  double of_largest = 0.6;       ///< other cameras' effects below this share of the largest follow
-                                 ///< from it
+  double min_sigmas = 4.0;        ///< a smaller effect may be chance
+  double min_sigmas_weak = 6.0;   ///< of position and principal point
+  double min_sigmas_delay = 3.0;  ///< of delays, which resemble no other parameter
+  double min_gain = 0.002;        ///< share of the misfit that the effect explains
+  double as_likely = 0.85;        ///< another parameter with this share of the gain is named too
+  double of_largest = 0.6;        ///< other cameras' effects below this share of the largest follow
+                                  ///< from it
   int num_threads = 0;
 };
 

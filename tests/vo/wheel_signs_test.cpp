@@ -112,6 +112,39 @@ TEST(JudgeSpans, WheelsThatStandAreDoubtedInTheirTimeAlone) {
   }
 }
 
+// Cameras alone at the start know lengths up to a factor: a way that is a fifth longer is none of
+// the wheels' business, a way that is missing is.
+TEST(JudgeSpans, WithoutScaleOnlyGrossWaysAreDoubted) {
+  const WheelModel model;
+  const std::vector<TimeSpan> span{{5 * kSecond, 8 * kSecond}};
+  const WheelOdometry sound(model, readings_of(model));
+  EXPECT_FALSE(judge_spans(span, sight_of(1.4), sound).at(0).is_doubted);
+  VoResult scaled = sight_of(1.4);
+  for (std::size_t k = 1; k < 50; ++k)
+    scaled.keyframes[k].wheels =
+        sound.between(scaled.keyframes[k - 1].t_ns, scaled.keyframes[k].t_ns);
+  EXPECT_TRUE(judge_spans(span, scaled, sound).at(0).is_doubted);
+  auto readings = readings_of(model);
+  hold(readings, 5.5, 1.0, true, true);
+  const WheelOdometry standing(model, std::move(readings));
+  EXPECT_TRUE(judge_spans(span, sight_of(1.4), standing).at(0).is_doubted);
+}
+
+// A camera whose images come at other instants than those of the others is no sign.
+TEST(WheelSigns, KeyframesOfDifferentCamerasShowNothing) {
+  const WheelModel model;
+  const WheelOdometry wheels(model, readings_of(model));
+  VoResult odometry = odometry_with(wheels);
+  for (std::size_t k = 0; k < odometry.keyframes.size(); ++k) {
+    auto& features = odometry.keyframes[k].features;
+    features.resize(4, features[0]);
+    for (std::size_t c = 0; c < 4; ++c)
+      if ((c == 3) != (k % 2 == 1)) features[c] = {};
+    odometry.keyframes[k].inliers = 5;
+  }
+  EXPECT_FALSE(find_wheel_signs(odometry, wheels, kHeight_m).any());
+}
+
 // A step is one time between two readings, a spike two that touch. Both in the wheels' own clock.
 TEST(ImpossibleTimes, AreThoseThatNoCarDrives) {
   WheelModel model;

@@ -40,7 +40,29 @@ struct Window {
            kWheelSigmas * std::sqrt(covariance.topLeftCorner<2, 2>().trace() +
                                     kLeastWay_m * kLeastWay_m + usual * usual);
   }
+  // Far more or less than any scale of the cameras explains, or the other way.
+  [[nodiscard]] bool doubts_way_at_any_scale() const {
+    constexpr double kMost = 3.0;
+    const double usual = kWheelSigmas * kLeastWay_m;
+    return doubts_way() &&
+           (way * wheel_way < 0.0 || std::abs(way) > kMost * std::abs(wheel_way) + usual ||
+            std::abs(wheel_way) > kMost * std::abs(way) + usual);
+  }
 };
+
+// Keyframes whose poses have the scale of the wheels: five motions or more since the last gap used
+// them.
+std::vector<std::uint8_t> scaled_by_wheels(const VoResult& odometry) {
+  constexpr int kFewest = 5;
+  std::vector<std::uint8_t> scaled;
+  int motions = 0;
+  for (const VoKeyframe& keyframe : odometry.keyframes) {
+    if (keyframe.after_gap) motions = 0;
+    motions += keyframe.wheels && keyframe.inliers >= kFewestInliers ? 1 : 0;
+    scaled.push_back(motions >= kFewest ? 1 : 0);
+  }
+  return scaled;
+}
 
 double signed_length(double x, double y) { return std::copysign(std::hypot(x, y), x); }
 
@@ -248,9 +270,11 @@ std::vector<SpanVerdict> judge_spans(const std::vector<TimeSpan>& spans,
     const SpanVerdict verdict{span, 5 * known_ns >= 4 * all_ns, false};
     verdicts.push_back(verdict);
   }
+  const auto has_scale = scaled_by_wheels(odometry);
   for (const std::size_t length : kWindows)
     for (const Window& w : windows_of(odometry, recorded, length)) {
-      if (!w.doubts_turn() && !w.doubts_way()) continue;
+      const bool doubts_way = has_scale[w.last] != 0 ? w.doubts_way() : w.doubts_way_at_any_scale();
+      if (!w.doubts_turn() && !doubts_way) continue;
       for (SpanVerdict& verdict : verdicts)
         if (overlap(w.first, w.last, verdict.span)) verdict.is_doubted = true;
     }

@@ -8,11 +8,18 @@
 namespace roadbook {
 namespace {
 
-// The images showed enough corners, but hardly one agreed with a motion near that of the wheels.
-bool is_lost(const VoKeyframe& keyframe) {
+// Half of the cameras or more showed enough corners in two successive keyframes, but hardly one
+// agreed with a motion near that of the wheels.
+bool is_lost(const VoKeyframe& before, const VoKeyframe& now) {
   std::size_t corners = 0;
-  for (const Features& features : keyframe.features) corners += features.size();
-  return keyframe.inliers < kFewestInliers && corners >= 4 * kFewestInliers;
+  std::size_t cameras = 0;
+  for (std::size_t c = 0; c < now.features.size(); ++c) {
+    if (before.features[c].size() == 0 || now.features[c].size() == 0) continue;
+    corners += now.features[c].size();
+    ++cameras;
+  }
+  return now.inliers < kFewestInliers && corners >= 4 * kFewestInliers &&
+         2 * cameras >= now.features.size();
 }
 
 // Keyframes whose sum of turns differs between the cameras and the wheels.
@@ -56,7 +63,7 @@ WheelSigns find_wheel_signs(const VoResult& odometry,
   const auto& keyframes = odometry.keyframes;
   WheelSigns signs;
   for (std::size_t k = 2; k < keyframes.size(); ++k)
-    if (keyframes[k].wheels && is_lost(keyframes[k]))
+    if (keyframes[k].wheels && is_lost(keyframes[k - 1], keyframes[k]))
       add_span(signs.spans, keyframes[k - 1].t_ns, keyframes[k].t_ns);
   signs.spans = united(std::move(signs.spans), wrong_turns(odometry, wheels));
   const auto ground = ground_factor(odometry, camera_height_m);
