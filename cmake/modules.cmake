@@ -39,10 +39,26 @@ function(roadbook_module name)
   endif()
 endfunction()
 
+# Adds the suites of test_<NAME> to ctest, which lists them with cmake/test_suites.cmake when it runs.
+function(roadbook_test_suites name)
+  set(script ${CMAKE_CURRENT_BINARY_DIR}/test_${name}_include.cmake)
+  file(GENERATE OUTPUT ${script} CONTENT "set(program [==[$<TARGET_FILE:test_${name}>]==])
+set(prefix ${name}.)
+set(list_file [==[${CMAKE_CURRENT_BINARY_DIR}/test_${name}_suites.cmake]==])
+set(properties ${ARGN})
+include([==[${CMAKE_SOURCE_DIR}/cmake/test_suites.cmake]==])
+")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
+endfunction()
+
 # roadbook_test(NAME SOURCES a_test.cpp ... DEPENDS roadbook_x ... [JSON]): one executable test_<NAME>,
-# every TEST in it a ctest case. ROADBOOK_DATA points at the real recordings, where there are any.
+# every suite in it a ctest case. TIMEOUT [s] and COST are those of each suite; ctest starts dear ones
+# first. ROADBOOK_DATA points at the real recordings, where there are any.
 function(roadbook_test name)
-  cmake_parse_arguments(ARG "JSON" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "JSON" "TIMEOUT;COST" "SOURCES;DEPENDS" ${ARGN})
+  if(NOT ARG_COST)
+    set(ARG_COST 1)
+  endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -61,9 +77,7 @@ function(roadbook_test name)
   else()
     roadbook_precompiled(test_${name} tests)
   endif()
-  # A test program that is read from a cold disk may take longer to list its tests than the usual 5 s.
-  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 300
-                       PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name})
+  roadbook_test_suites(${name} TIMEOUT ${ARG_TIMEOUT} COST ${ARG_COST} LABELS ${name})
 endfunction()
 
 # roadbook_runs_program(TARGET...): tests that run the program itself.
