@@ -56,13 +56,18 @@ void RayScene::set(const std::vector<Triangle>& triangles, bool lasting, std::ui
 
 namespace {
 
-void load(const RayBatch& rays, std::size_t first, RTCRayHit16& packet) {
-  constexpr std::size_t kBytes = RayBatch::kPacket * sizeof(float);
+// Loads `n` rays. The first of them fills the lanes left over: Embree asserts that lanes hold
+// numbers, also those that it does not cast, and behind the last ray of a batch nothing was
+// written.
+void load(const RayBatch& rays, std::size_t first, std::size_t n, RTCRayHit16& packet) {
+  const std::size_t bytes = n * sizeof(float);
   RTCRay16& r = packet.ray;
-  std::memcpy(r.dir_x, rays.dx.data() + first, kBytes);
-  std::memcpy(r.dir_y, rays.dy.data() + first, kBytes);
-  std::memcpy(r.dir_z, rays.dz.data() + first, kBytes);
-  std::memcpy(r.tfar, rays.range_m.data() + first, kBytes);
+  std::memcpy(r.dir_x, rays.dx.data() + first, bytes);
+  std::memcpy(r.dir_y, rays.dy.data() + first, bytes);
+  std::memcpy(r.dir_z, rays.dz.data() + first, bytes);
+  std::memcpy(r.tfar, rays.range_m.data() + first, bytes);
+  for (float* const lanes : {r.dir_x, r.dir_y, r.dir_z, r.tfar})
+    std::fill(lanes + n, lanes + RayBatch::kPacket, lanes[0]);
   for (std::size_t k = 0; k < RayBatch::kPacket; ++k) {
     r.org_x[k] = rays.origin[0];
     r.org_y[k] = rays.origin[1];
@@ -86,7 +91,7 @@ void RayScene::intersect(RayBatch& rays) const {
   for (std::size_t first = 0; first < rays.count; first += RayBatch::kPacket) {
     const std::size_t n = std::min(RayBatch::kPacket, rays.count - first);
     for (std::size_t k = 0; k < RayBatch::kPacket; ++k) valid[k] = k < n ? -1 : 0;
-    load(rays, first, packet);
+    load(rays, first, n, packet);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;

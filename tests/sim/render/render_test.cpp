@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <opencv2/core.hpp>
 
 #include "sim/render/image_sensor.hpp"
+#include "sim/render/ray_scene.hpp"
 #include "sim/render/renderer.hpp"
 #include "sim/streams/rig.hpp"
 #include "sim/world/surface_paint.hpp"
@@ -160,6 +162,35 @@ TEST(Render, RangesAreThoseOfRayAndPlane) {
         ++compared;
       }
     EXPECT_GT(compared, 100);
+  }
+}
+
+// The rays of a row of pixels seldom fill whole packets. What stands behind the last ray is not
+// read, whatever it is.
+TEST(Render, RaysAreCastWhateverStandsBehindTheLast) {
+  Triangle floor;
+  floor.uv.fill(Eigen::Vector2f::Zero());
+  floor.corner = {Eigen::Vector3f(-50.0F, -50.0F, 0.0F), Eigen::Vector3f(50.0F, -50.0F, 0.0F),
+                  Eigen::Vector3f(0.0F, 50.0F, 0.0F)};
+  RayScene scene;
+  scene.set({floor});
+  for (const std::size_t count : {1U, 7U, 9U, 14U, 16U, 30U}) {
+    SCOPED_TRACE(count);
+    RayBatch rays{};
+    for (auto* const part : {&rays.dx, &rays.dy, &rays.dz, &rays.range_m})
+      part->fill(std::numeric_limits<float>::quiet_NaN());
+    rays.origin = {0.0F, 0.0F, 2.0F};
+    rays.count = count;
+    rays.clear_ends();
+    for (std::size_t i = 0; i < count; ++i) {
+      const float angle = 0.02F * static_cast<float>(i);
+      rays.set_direction(i, {std::sin(angle), 0.0F, -std::cos(angle)});
+    }
+    scene.intersect(rays);
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_NE(rays.triangle[i], nullptr);
+      EXPECT_NEAR(rays.range_m[i], 2.0F / std::cos(0.02F * static_cast<float>(i)), 1e-4F);
+    }
   }
 }
 
