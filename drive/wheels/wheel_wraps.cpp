@@ -46,9 +46,9 @@ void report_wraps(const std::string& file,
   period << period_rad / column.factor;
   std::ostringstream got;
   got.precision(1);
-  got << std::fixed << "counters that start again at " << period.str() << " within "
+  got << std::fixed << "values that start again at " << period.str() << " within "
       << static_cast<double>(rows.back().t_ns - rows.front().t_ns) * 1e-9 << " s; continued";
-  problems.warning(file, 0, "wheels0", got.str(), "wraps_at: " + period.str() + " in sensor.yaml");
+  problems.warning(file, 0, "counters", got.str(), "wraps_at: " + period.str() + " in sensor.yaml");
 }
 
 }  // namespace

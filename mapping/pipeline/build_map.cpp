@@ -72,8 +72,8 @@ VoResult odometry_of(const Drive& drive,
 
 void add_doubts(const Drive& drive, const VoResult& odometry, std::vector<Problem>& warnings) {
   for (const SensorDoubt& doubt : odometry.doubts)
-    warnings.push_back({Severity::kWarning, (drive.folder() / doubt.sensor).string(), 0,
-                        doubt.sensor, doubt.got, doubt.want});
+    warnings.push_back({Severity::kWarning, (drive.folder() / doubt.sensor).string(), 0, "motion",
+                        doubt.got, doubt.want});
 }
 
 std::vector<LoopClosure> loops_of(const MappingInput& input,
@@ -227,8 +227,7 @@ void build_from(const std::vector<Drive>& drives,
     names_before = MapLayers(map_path).all_names();
   }
   MapFileBuilder build(map_path, key);
-  for (const auto& line : build.warnings())
-    summary.warnings.push_back({Severity::kWarning, map_path.string(), 0, "", line, ""});
+  summary.warnings.insert(summary.warnings.end(), build.warnings().begin(), build.warnings().end());
 
   const auto cars = clock.run("own car", [&] {
     std::vector<OwnCar> found;

@@ -54,19 +54,21 @@ std::string stored_stage_digest(const SqlDatabase& database, const std::string& 
 struct MapFileBuilder::Impl {
   Impl(std::filesystem::path map_file, std::string_view inputs_key)
       : map(std::move(map_file)), lock(map) {
-    if (lock.was_damaged()) warn("was damaged: the build starts afresh");
+    if (lock.was_damaged()) warn("a damaged file", "checkpoints of a stopped build");
     try {
       adopt(inputs_key);
     } catch (const BadInput& bad) {
-      warn(std::string("is damaged: the build starts afresh (") + bad.what() + ")");
+      const Problem& fault = bad.problems().front();
+      warn(fault.got + " (" + fault.field + ")", fault.want);
       lock.reset();
       stages.clear();
       adopt(inputs_key);
     }
   }
 
-  void warn(const std::string& text) {
-    warnings.push_back(to_line({Severity::kWarning, database().file().string(), 0, text, "", ""}));
+  void warn(const std::string& got, const std::string& want) {
+    warnings.push_back({Severity::kWarning, database().file().string(), 0, "checkpoints", got,
+                        want + "; the build starts afresh"});
   }
   [[nodiscard]] const SqlDatabase& database() const { return lock.database(); }
 
@@ -78,7 +80,8 @@ struct MapFileBuilder::Impl {
     create_tables();
     const std::string key = database().value("SELECT inputs_key FROM build");
     if (!key.empty() && key != inputs_key) {
-      warn("was begun with other inputs or options: the build starts afresh");
+      warn("a build begun with other inputs or options",
+           "one of the same inputs, options and program");
       lock.reset();
       create_tables();
     }
@@ -137,7 +140,7 @@ struct MapFileBuilder::Impl {
   std::filesystem::path map;
   MapLock lock;
   std::vector<std::string> stages;
-  std::vector<std::string> warnings;
+  std::vector<Problem> warnings;
 };
 
 MapFileBuilder::MapFileBuilder(std::filesystem::path map, std::string_view inputs_key)
@@ -145,7 +148,7 @@ MapFileBuilder::MapFileBuilder(std::filesystem::path map, std::string_view input
 MapFileBuilder::~MapFileBuilder() = default;
 
 const std::vector<std::string>& MapFileBuilder::stages() const { return impl_->stages; }
-const std::vector<std::string>& MapFileBuilder::warnings() const { return impl_->warnings; }
+const std::vector<Problem>& MapFileBuilder::warnings() const { return impl_->warnings; }
 
 bool MapFileBuilder::has(std::string_view stage) const {
   return std::find(impl_->stages.begin(), impl_->stages.end(), stage) != impl_->stages.end();

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.hpp"
 #include "mapping/layers/map_layers.hpp"
 #include "mapping/map.hpp"
 #include "mapping/store/map_finish_options.hpp"
@@ -31,8 +32,8 @@ class MapFileBuilder {
   /// Stages completed so far, in the order they were saved.
   [[nodiscard]] const std::vector<std::string>& stages() const;
   [[nodiscard]] bool has(std::string_view stage) const;
-  /// What was dropped on opening, one line each.
-  [[nodiscard]] const std::vector<std::string>& warnings() const;
+  /// What was dropped on opening: warnings about MAP.part.
+  [[nodiscard]] const std::vector<Problem>& warnings() const;
 
   /// A blob of a completed stage; asking for one that was not saved is our own mistake.
   [[nodiscard]] std::string load(std::string_view stage, std::string_view name) const;

@@ -78,8 +78,13 @@ Mapped mapped(const fs::path& drive) {
   options.covariances = false;
   const MapSummary summary = build_map({drive}, drive.parent_path() / "map.gpkg", options);
   Mapped result{summary.ate_median_m.value_or(1e9), summary.keyframes, {}};
+  // A line names the sensor once, by its folder.
   for (const Problem& warning : summary.warnings)
-    if (warning.field == "wheels0") result.doubts.push_back(warning.got + " | " + warning.want);
+    if (fs::path(warning.file).filename() == "wheels0") {
+      EXPECT_EQ(warning.field, "motion");
+      result.doubts.push_back(warning.got + " | " + warning.want);
+      EXPECT_EQ(result.doubts.back().find("wheels0"), std::string::npos);
+    }
   return result;
 }
 

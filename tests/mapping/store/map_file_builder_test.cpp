@@ -93,7 +93,11 @@ TEST(MapFileBuilder, OtherInputsStartAfresh) {
   MapFileBuilder(folder / "a.gpkg", "key").save("odometry", {{"poses", "1"}});
   const MapFileBuilder other(folder / "a.gpkg", "another key");
   EXPECT_FALSE(other.has("odometry"));
-  EXPECT_EQ(other.warnings().size(), 1U);
+  ASSERT_EQ(other.warnings().size(), 1U);
+  EXPECT_EQ(to_line(other.warnings().front()),
+            "warning: " + (folder / "a.gpkg.part").string() +
+                ": checkpoints: got a build begun with other inputs or options, want one of the "
+                "same inputs, options and program; the build starts afresh");
 }
 
 TEST(MapFileBuilder, DamagedCheckpointsStartAfresh) {
@@ -109,7 +113,11 @@ TEST(MapFileBuilder, DamagedCheckpointsStartAfresh) {
     }
     MapFileBuilder again(folder / "a.gpkg", "key");
     EXPECT_FALSE(again.has("odometry"));
-    EXPECT_FALSE(again.warnings().empty());
+    ASSERT_EQ(again.warnings().size(), 1U);
+    // One fault a line: no line of another message within it.
+    const std::string line = to_line(again.warnings().front());
+    EXPECT_EQ(line.rfind("warning: " + part.string() + ": checkpoints: got "), 0U) << line;
+    EXPECT_EQ(line.find("error"), std::string::npos) << line;
     again.save("odometry", {{"poses", "sound"}});
     EXPECT_EQ(again.load("odometry", "poses"), "sound");
   }
