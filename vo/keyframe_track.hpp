@@ -50,7 +50,7 @@ struct Track {
 
 /// A time in which a sensor contradicts the cameras, and what was done.
 struct SensorDoubt {
-  std::string sensor;  ///< "wheels0"
+  std::string sensor;  ///< "wheels0"; empty: wheels or cameras
   std::int64_t t_begin_ns = 0;
   std::int64_t t_end_ns = 0;
   std::string got;   ///< what disagrees, when and by how much

@@ -72,8 +72,10 @@ VoResult odometry_of(const Drive& drive,
 
 void add_doubts(const Drive& drive, const VoResult& odometry, std::vector<Problem>& warnings) {
   for (const SensorDoubt& doubt : odometry.doubts)
-    warnings.push_back({Severity::kWarning, (drive.folder() / doubt.sensor).string(), 0, "motion",
-                        doubt.got, doubt.want});
+    warnings.push_back(
+        {Severity::kWarning,
+         (doubt.sensor.empty() ? drive.folder() : drive.folder() / doubt.sensor).string(), 0,
+         "motion", doubt.got, doubt.want});
 }
 
 std::vector<LoopClosure> loops_of(const MappingInput& input,

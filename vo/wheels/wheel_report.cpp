@@ -92,15 +92,16 @@ SensorDoubt describe_correction(const WheelCorrection& correction,
 SensorDoubt describe_unknown(const std::vector<TimeSpan>& spans, std::int64_t origin_ns) {
   constexpr std::size_t kNamed = 3;
   SensorDoubt result;
-  result.sensor = "wheels0";
   result.t_begin_ns = spans.front().first;
   result.t_end_ns = spans.back().second;
+  result.got = "corners that agree with no motion ";
   for (std::size_t i = 0; i < spans.size() && i < kNamed; ++i)
     result.got += (i > 0 ? "; " : "") + span_text(spans[i].first, spans[i].second, origin_ns);
   if (spans.size() > kNamed)
     result.got += "; and " + std::to_string(spans.size() - kNamed) + " more such times";
-  result.got += " a motion that few corners agree with";
-  result.want = "what the cameras see; they lose their way there, and the wheels stay in use";
+  result.want =
+      "corners that agree with wheels0 or with each other (wrong wheels, or a wrong calibration of "
+      "cameras?); the wheels stay in use";
   return result;
 }
 

@@ -23,7 +23,7 @@ namespace roadbook {
                                               std::int64_t origin_ns);
 
 /// Puts times into words in which corners fit no motion near that of the wheels, and the cameras
-/// alone know none, so that the wheels stayed in use.
+/// alone know none, so that the wheels stayed in use. The wheels or the cameras may be the cause.
 [[nodiscard]] SensorDoubt describe_unknown(const std::vector<TimeSpan>& spans,
                                            std::int64_t origin_ns);
 
