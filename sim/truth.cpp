@@ -42,6 +42,14 @@ Json ground_json(const World& world) {
                        {"slope_away", h.slope},
                        {"drain_width", h.drain_width_m}};
   }
+  if (spec.storeys) {
+    const StoreySpec& s = *spec.storeys;
+    ground["storeys"] = {{"count", s.count},
+                         {"height", s.height_m},
+                         {"ramp_from", point(s.ramp_from)},
+                         {"ramp_to", point(s.ramp_to)},
+                         {"ramp_width", s.ramp_width_m}};
+  }
   Json raster;
   const double step = 0.5;
   raster["low"] = point(spec.low);

@@ -40,6 +40,7 @@ void add_ground_ray(const RayBatch& rays, std::size_t i, GroundRays& ground) {
   ground.nx[k] = n.x();
   ground.ny[k] = n.y();
   ground.nz[k] = n.z();
+  ground.lift[k] = rays.triangle[i]->lift_m;
 }
 
 }  // namespace
@@ -71,11 +72,15 @@ void Shader::sky(const Lane& dx,
   for (std::size_t j = 0; j < lookups.count; ++j) value[lookups.owner[j]] = lookups.value[j];
 }
 
-/// Stones of places that have moved (their paint has been moved in its raster).
+/// Stones of places that have moved (their paint has been moved in its raster), and of equal bays.
 void Shader::move(const RayBatch& rays, GroundRays& ground) const {
-  for (std::size_t k = 0; k < ground.count && !world_.moved.empty(); ++k) {
+  const auto& bays = world_.scenario.bays;
+  const bool moves = !world_.moved.empty() || bays;
+  for (std::size_t k = 0; k < ground.count && moves; ++k) {
     const Eigen::Vector2d place(rays.origin[0] + ground.range[k] * ground.dx[k],
                                 rays.origin[1] + ground.range[k] * ground.dy[k]);
+    if (const int bay = bays ? bays->bay_of(place) : 0; bay > 0)
+      move_stones(plan_, static_cast<float>(bay * bays->step_m()), 0.0F, k, ground);
     for (const MovedPatch& patch : world_.moved)
       if (patch.holds(place))
         move_stones(plan_, static_cast<float>(patch.shift.x()), static_cast<float>(patch.shift.y()),

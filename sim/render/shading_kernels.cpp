@@ -88,7 +88,7 @@ ROADBOOK_CLONES void footprints(const GroundPlan& plan,
     g.mirror_y[k] = ry;
     g.mirror_z[k] = rz;
     const float up = rz > 0.02F ? rz : 0.02F;
-    const float high = (c.ceiling_z - pz) / up;
+    const float high = (c.ceiling_z + g.lift[k] - pz) / up;
     const float t = high < 60.0F ? high : 60.0F;
     g.ceiling_x[k] = (px + t * rx - c.ceiling_x) * c.per_ceiling_texel;
     g.ceiling_y[k] = (py + t * ry - c.ceiling_y) * c.per_ceiling_texel;

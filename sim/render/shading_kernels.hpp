@@ -25,6 +25,7 @@ struct GroundRays {
   std::size_t count = 0;
   std::array<std::uint16_t, RayBatch::kMost> ray;  ///< index in the batch
   alignas(32) Lane dx, dy, dz, range, nx, ny, nz;
+  alignas(32) Lane lift;  ///< height of the storey [m]
 
   // Filled by `footprints`. The painted ground is looked up at `places` points in a row.
   alignas(32) Lane x, y;  ///< [texels]

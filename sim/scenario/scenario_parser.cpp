@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/scenario/equal_parts.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -105,7 +107,7 @@ WallSpec read_wall(const YamlReader& in) {
 
 GroundSpec read_ground(const YamlReader& in) {
   in.only({"low", "high", "texel", "brightness", "roughness", "cracks_per_are", "stains_per_are",
-           "glare", "gravel_edge", "wet_per_are", "hinge"});
+           "glare", "gravel_edge", "wet_per_are", "hinge", "storeys"});
   GroundSpec ground;
   ground.low = in.at("low").point();
   ground.high = in.at("high").point();
@@ -130,6 +132,10 @@ GroundSpec read_ground(const YamlReader& in) {
     if ((h.to - h.from).norm() < 0.1) hinge->at("to").fail("a line without length", "two points");
     h.slope = hinge->number("slope", 0.0, -0.3, 0.3);
     h.drain_width_m = hinge->number("drain_width", 0.0, 0.0, 2.0);
+  }
+  if (const auto storeys = in.find("storeys")) {
+    if (ground.hinge) storeys->fail("storeys over a hinge", "a ground without 'hinge'");
+    ground.storeys = read_storeys(*storeys);
   }
   return ground;
 }
@@ -227,7 +233,7 @@ void read_drive(const YamlReader& root, Scenario& scenario) {
 Scenario read_scenario(const YamlReader& root, const std::string& file) {
   root.only({"name",    "seed",   "ground", "ceiling",     "lanes",    "rows",    "crossings",
              "pillars", "blocks", "walls",  "pedestrians", "traffic",  "vehicle", "cameras",
-             "route",   "stops",  "laps",   "imu",         "friction", "sizes"});
+             "route",   "stops",  "laps",   "imu",         "friction", "sizes",   "bays"});
   Scenario scenario;
   scenario.name = root.at("name").text();
   scenario.file = file;
@@ -242,6 +248,11 @@ Scenario read_scenario(const YamlReader& root, const std::string& file) {
     for (const auto& item : root.items(key))
       for (const auto& block : read_block(item, key == "pillars")) scenario.blocks.push_back(block);
   for (const auto& item : root.items("walls")) scenario.walls.push_back(read_wall(item));
+  if (const auto storeys = root.at("ground").find("storeys")) require_ceiling(*storeys, scenario);
+  if (const auto bays = root.find("bays")) {
+    scenario.bays = read_bays(*bays, scenario.ground);
+    fill_bays(scenario);
+  }
   if (const auto vehicle = root.find("vehicle")) scenario.vehicle = read_vehicle(*vehicle);
   if (const auto cameras = root.find("cameras")) scenario.cameras = read_cameras(*cameras);
   read_drive(root, scenario);

@@ -1,6 +1,7 @@
 #include "sim/scenario/scenario_spec.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.hpp"
 
@@ -18,6 +19,12 @@ const T& named(const std::vector<T>& all, const std::string& name, const std::st
 }
 
 }  // namespace
+
+int BaySpec::bay_of(const Eigen::Vector2d& place) const {
+  if (place.y() < low.y() || place.y() >= high.y()) return -1;
+  const double bay = std::floor((place.x() - low.x()) / step_m());
+  return bay >= 0.0 && bay < count ? static_cast<int>(bay) : -1;
+}
 
 const LaneSpec& Scenario::lane(const std::string& lane_name) const {
   return named(lanes, lane_name, file);

@@ -33,6 +33,7 @@ struct SpaceRowSpec {
   double occupied = 0.5;     ///< probability that a space has a parked car
   int first_number = 0;      ///< painted number of the first space; 0: no numbers
   std::vector<int> columns;  ///< lines (0 to count) that are columns instead of paint
+  int copy_of = -1;          ///< row of the first bay that this row looks like; -1: none
 };
 
 enum class CrossingStyle { kZebra, kHatching };
@@ -57,6 +58,7 @@ struct BlockSpec {
   double heading = 0.0;
   SurfaceTexture texture = SurfaceTexture::kConcrete;
   bool pillar = false;
+  int copy_of = -1;  ///< block of the first bay that this block looks like; -1: none
 };
 
 struct WallSpec {
@@ -65,6 +67,7 @@ struct WallSpec {
   double height_m = 3.0;
   SurfaceTexture texture = SurfaceTexture::kConcrete;
   int posters = 0;
+  int copy_of = -1;  ///< wall of the first bay that this wall looks like; -1: none
 };
 
 /// The floor falls (or rises) away from a line to both sides.
@@ -73,6 +76,15 @@ struct HingeSpec {
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
   double slope = 0.0;          ///< rise per metre away from the line, on both sides
   double drain_width_m = 0.0;  ///< 0: no drain
+};
+
+/// Storeys that look the same, one above another, and the straight ramps that join them.
+struct StoreySpec {
+  int count = 2;
+  double height_m = 3.2;                                ///< from floor to floor
+  Eigen::Vector2d ramp_from = Eigen::Vector2d::Zero();  ///< middle of the ramp's low end
+  Eigen::Vector2d ramp_to = Eigen::Vector2d::Zero();    ///< of its high end; along x or y
+  double ramp_width_m = 4.0;
 };
 
 struct GroundSpec {
@@ -87,12 +99,24 @@ struct GroundSpec {
   double gravel_edge_m = 0.0;    ///< width of gravel on both sides of every lane
   double wet_per_are = 0.0;      ///< wet patches per 100 m^2 of lane
   std::optional<HingeSpec> hinge;
+  std::optional<StoreySpec> storeys;
 };
 
 struct CeilingSpec {
   double height_m = 2.8;  ///< over z = 0
   double lamp_spacing_m = 5.0;
   double lamp_brightness = 1.0;
+};
+
+/// A part of the place that looks the same `count` times, side by side along x.
+struct BaySpec {
+  Eigen::Vector2d low = Eigen::Vector2d::Zero();   ///< corner of the first bay
+  Eigen::Vector2d high = Eigen::Vector2d::Zero();  ///< opposite corner
+  int count = 2;
+
+  [[nodiscard]] double step_m() const { return high.x() - low.x(); }
+  /// Index of the bay that holds a place; -1: none.
+  [[nodiscard]] int bay_of(const Eigen::Vector2d& place) const;
 };
 
 /// People who walk back and forth along a crossing.
@@ -148,6 +172,7 @@ struct Scenario {
   int visit = 0;           ///< chosen when loading
   GroundSpec ground;
   std::optional<CeilingSpec> ceiling;
+  std::optional<BaySpec> bays;  ///< `rows`, `blocks` and `walls` hold their copies too
   std::vector<LaneSpec> lanes;
   std::vector<SpaceRowSpec> rows;
   std::vector<CrossingSpec> crossings;

@@ -1,10 +1,33 @@
 #include "sim/world/ground.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace roadbook {
 
-Ground::Ground(const GroundSpec& spec, const GroundEffects& effects) : height_m_(effects.height_m) {
+namespace {
+
+// Share of the ramp's rise at a place; 0 beside the ramp.
+double ramp_share(const StoreySpec& storeys, const Eigen::Vector2d& place) {
+  if (!ramp_area(storeys).contains(place)) return 0.0;
+  const Eigen::Vector2d along = storeys.ramp_to - storeys.ramp_from;
+  return along.dot(place - storeys.ramp_from) / along.squaredNorm();
+}
+
+}  // namespace
+
+Eigen::AlignedBox2d ramp_area(const StoreySpec& storeys) {
+  const Eigen::Vector2d along = (storeys.ramp_to - storeys.ramp_from).normalized();
+  const Eigen::Vector2d half = 0.5 * storeys.ramp_width_m * Eigen::Vector2d(-along.y(), along.x());
+  Eigen::AlignedBox2d area(storeys.ramp_from + half);
+  area.extend(Eigen::Vector2d(storeys.ramp_from - half));
+  area.extend(Eigen::Vector2d(storeys.ramp_to + half));
+  area.extend(Eigen::Vector2d(storeys.ramp_to - half));
+  return area;
+}
+
+Ground::Ground(const GroundSpec& spec, const GroundEffects& effects)
+    : height_m_(effects.height_m), storeys_(spec.storeys) {
   const bool new_hinge = !spec.hinge && effects.hinge != 0.0;
   if (!spec.hinge && !new_hinge) return;
   // A place without a hinge gets one through its middle, along x.
@@ -23,8 +46,14 @@ double Ground::hinge_distance(double x, double y) const {
   return hinged_ ? hinge_left_.dot(Eigen::Vector2d(x, y) - hinge_point_) : 0.0;
 }
 
-double Ground::height(double x, double y) const {
-  return height_m_ + hinge_slope_ * std::abs(hinge_distance(x, y));
+double Ground::height(double x, double y, double near_m) const {
+  const double floor = height_m_ + hinge_slope_ * std::abs(hinge_distance(x, y));
+  if (!storeys_) return floor;
+  const double share = ramp_share(*storeys_, {x, y});
+  const int highest = storeys_->count - (share > 0.0 ? 2 : 1);
+  const double storey = std::round((near_m - floor) / storeys_->height_m - share);
+  return floor +
+         storeys_->height_m * (share + std::clamp(storey, 0.0, static_cast<double>(highest)));
 }
 
 Eigen::Vector3d Ground::normal(double x, double y) const {
@@ -34,13 +63,17 @@ Eigen::Vector3d Ground::normal(double x, double y) const {
   return Eigen::Vector3d(-gradient.x(), -gradient.y(), 1.0).normalized();
 }
 
-Eigen::Isometry3d Ground::stand(
-    double x, double y, double heading, double wheelbase_m, double track_width_m) const {
+Eigen::Isometry3d Ground::stand(double x,
+                                double y,
+                                double heading,
+                                double wheelbase_m,
+                                double track_width_m,
+                                double near_m) const {
   const Eigen::Vector2d forward(std::cos(heading), std::sin(heading));
   const Eigen::Vector2d left(-forward.y(), forward.x());
   const auto under = [&](double ahead, double aside) {
     const Eigen::Vector2d p = Eigen::Vector2d(x, y) + ahead * forward + aside * left;
-    return height(p.x(), p.y());
+    return height(p.x(), p.y(), near_m);
   };
   const double half = 0.5 * track_width_m;
   const double rear_left = under(0.0, half);

@@ -157,6 +157,8 @@ PaintedGround paint_ground(const Scenario& scenario, const Layout& layout, const
   rows.pause();
   paint_shadows(scenario, layout, result.brightness);
   paint_kinds(scenario, layout, result.kind);
+  if (scenario.bays)
+    for (Canvas* canvas : {&result.brightness, &result.kind}) repeat_bay(*scenario.bays, *canvas);
   return result;
 }
 

@@ -36,14 +36,45 @@ void add_row(const SpaceRowSpec& row, Layout& layout) {
   }
 }
 
+// Parks the cars of the first bay in the row of another bay. `first_space` is by row.
+void copy_cars(const Scenario& scenario,
+               const SpaceRowSpec& row,
+               const std::vector<int>& first_space,
+               Layout& layout) {
+  const auto own = static_cast<std::size_t>(row.copy_of);
+  const auto copy = static_cast<std::size_t>(&row - scenario.rows.data());
+  const std::size_t cars = layout.cars.size();
+  for (std::size_t i = 0; i < cars; ++i) {
+    ParkedCar car = layout.cars[i];
+    const int index = car.space - first_space[own];
+    if (index < 0 || index >= row.count) continue;
+    car.space = first_space[copy] + index;
+    car.centre += row.from - scenario.rows[own].from;
+    layout.cars.push_back(car);
+  }
+}
+
 }  // namespace
 
 Layout make_layout(const Scenario& scenario) {
   Layout layout;
-  for (const SpaceRowSpec& row : scenario.rows) add_row(row, layout);
+  std::vector<std::size_t> first_line;
+  std::vector<int> first_space;
+  for (const SpaceRowSpec& row : scenario.rows) {
+    first_line.push_back(layout.lines.size());
+    first_space.push_back(static_cast<int>(layout.spaces.size()));
+    add_row(row, layout);
+    for (std::size_t i = first_line.back(); row.copy_of >= 0 && i < layout.lines.size(); ++i)
+      layout.lines[i].copy_of = static_cast<int>(first_line[static_cast<std::size_t>(row.copy_of)] +
+                                                 i - first_line.back());
+  }
   Random random(scenario.seed, "parked", static_cast<std::uint64_t>(scenario.visit));
   std::size_t next = 0;
-  for (const SpaceRowSpec& row : scenario.rows)
+  for (const SpaceRowSpec& row : scenario.rows) {
+    if (row.copy_of >= 0) {
+      copy_cars(scenario, row, first_space, layout);
+      continue;
+    }
     for (int i = 0; i < row.count; ++i, ++next) {
       const ParkingSpace& space = layout.spaces[next];
       // Every space draws the same number of values: one car more elsewhere changes none here.
@@ -60,6 +91,7 @@ Layout make_layout(const Scenario& scenario) {
       car.model = static_cast<int>(random.below(kCarModels));
       if (occupied) layout.cars.push_back(car);
     }
+  }
   return layout;
 }
 

@@ -36,6 +36,7 @@ struct SpaceLine {
   double width_m = 0.12;
   double wear = 0.0;
   double paint = 0.8;
+  int copy_of = -1;  ///< line of the first bay that this line looks like; -1: none
 };
 
 /// Spaces, lines and parked cars of a scenario, with coordinates.
@@ -47,7 +48,8 @@ struct Layout {
 
 constexpr int kCarModels = 9;
 
-/// Spaces and lines depend on the scenario alone, the parked cars on its seed and visit.
+/// Spaces and lines depend on the scenario alone, the parked cars on its seed and visit. Copies of
+/// a bay have the cars of the first bay.
 [[nodiscard]] Layout make_layout(const Scenario& scenario);
 
 }  // namespace roadbook

@@ -36,7 +36,8 @@ struct Triangle {
   std::array<Eigen::Vector2f, 3> uv;
   int texture = 0;
   float texel_m = 0.01F;
-  float light = 1.0F;  ///< factor on the texture, as displayed
+  float light = 1.0F;   ///< factor on the texture, as displayed
+  float lift_m = 0.0F;  ///< of the ground: height of its storey, whose ceiling it mirrors
   SurfaceClass kind = SurfaceClass::kWall;
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< unit; set when a scene takes the triangle
   std::uint32_t surface = 0;  ///< the same for all triangles of one even face

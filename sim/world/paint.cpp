@@ -128,6 +128,22 @@ void draw_text(Canvas& canvas,
     }
 }
 
+void repeat_bay(const BaySpec& bays, Canvas& canvas) {
+  const Eigen::Vector2d first = ((bays.low - canvas.low) / canvas.texel_m).array().round();
+  const Eigen::Vector2d size = ((bays.high - bays.low) / canvas.texel_m).array().round();
+  const cv::Rect all(0, 0, canvas.image.cols, canvas.image.rows);
+  const cv::Rect own = cv::Rect(static_cast<int>(first.x()), static_cast<int>(first.y()),
+                                static_cast<int>(size.x()), static_cast<int>(size.y())) &
+                       all;
+  const cv::Mat look = canvas.image(own).clone();
+  for (int bay = 1; bay < bays.count; ++bay) {
+    const int shift = static_cast<int>(std::lround(bay * bays.step_m() / canvas.texel_m));
+    const cv::Rect there = (own + cv::Point(shift, 0)) & all;
+    if (there.empty()) continue;
+    look(cv::Rect(0, 0, there.width, there.height)).copyTo(canvas.image(there));
+  }
+}
+
 cv::Mat speckle_tile(
     int size, int grains, int smallest, int largest, double contrast, Random& random) {
   cv::Mat tile(size, size, CV_32FC1, cv::Scalar(0));

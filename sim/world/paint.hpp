@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "sim/scenario/scenario_spec.hpp"
 
 namespace roadbook {
 
@@ -50,6 +51,9 @@ void draw_text(Canvas& canvas,
                double height_m,
                double value,
                double opacity);
+
+/// Copies what is painted on the first bay to the other bays.
+void repeat_bay(const BaySpec& bays, Canvas& canvas);
 
 /// A tile that repeats without seam: stones and pits of a fine surface, mean 128.
 [[nodiscard]] cv::Mat speckle_tile(

@@ -92,11 +92,12 @@ void advance(VehicleState& s,
              double moved,
              double turned,
              double creep) {
-  const Eigen::Isometry3d T =
-      ground.stand(s.x, s.y, s.heading + 0.5 * turned, vehicle.wheelbase_m, vehicle.track_width_m);
+  const Eigen::Isometry3d T = ground.stand(s.x, s.y, s.heading + 0.5 * turned, vehicle.wheelbase_m,
+                                           vehicle.track_width_m, s.height_m);
   const Eigen::Vector3d d = T.linear() * Eigen::Vector3d(moved, creep, 0.0);
   s.x += d.x();
   s.y += d.y();
+  s.height_m = ground.height(s.x, s.y, s.height_m);
   s.heading += turned;
   s.distance_m += moved;
   s.turned += turned;
@@ -136,12 +137,14 @@ VehicleState VehicleMotion::at(double t_s) const {
   s.steering = mix(a.steering, b.steering);
   s.distance_m = mix(a.distance_m, b.distance_m);
   s.turned = mix(a.turned, b.turned);
+  s.height_m = mix(a.height_m, b.height_m);
   return s;
 }
 
 Eigen::Isometry3d VehicleMotion::T_world_vehicle(double t_s) const {
   const VehicleState s = at(t_s);
-  return ground_.stand(s.x, s.y, s.heading, vehicle_.wheelbase_m, vehicle_.track_width_m) *
+  return ground_.stand(s.x, s.y, s.heading, vehicle_.wheelbase_m, vehicle_.track_width_m,
+                       s.height_m) *
          Eigen::AngleAxisd(vehicle_.nose_down_rad, Eigen::Vector3d::UnitY());
 }
 

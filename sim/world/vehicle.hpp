@@ -22,6 +22,7 @@ struct VehicleState {
   double steering = 0.0;      ///< [rad] at the road wheels
   double distance_m = 0.0;    ///< driven so far, on the surface
   double turned = 0.0;        ///< integral of yaw_rate [rad]
+  double height_m = 0.0;      ///< of the ground there: which storey
 };
 
 /// A whole drive as states at equal times.

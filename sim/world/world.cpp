@@ -1,9 +1,11 @@
 #include "sim/world/world.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sim/world/path.hpp"
+#include "sim/world/storeys.hpp"
 #include "sim/world/surface_paint.hpp"
 
 namespace roadbook {
@@ -47,16 +49,21 @@ double lowest(const World& world, const Eigen::Vector2d& a, const Eigen::Vector2
 
 void add_walls(World& world) {
   std::uint64_t index = 0;
+  std::vector<int> look;  // texture by wall
   for (const WallSpec& wall : world.scenario.walls) {
     Random random(world.scenario.seed, "wall", index++);
     const double length = (wall.to - wall.from).norm();
     // Seen from the left of from -> to, its text reads from `to` to `from`. The foot of a wall on a
     // hinged floor is level, a little below the lowest ground.
     const double foot = world.scenario.ceiling ? 0.0 : lowest(world, wall.from, wall.to);
-    const int texture = static_cast<int>(world.textures.size());
-    world.textures.emplace_back(
-        paint_wall(wall.texture, length, wall.height_m, kWallTexel, wall.posters, false, random),
-        false);
+    const bool copy = wall.copy_of >= 0;
+    const int texture = copy ? look[static_cast<std::size_t>(wall.copy_of)]
+                             : static_cast<int>(world.textures.size());
+    look.push_back(texture);
+    if (!copy)
+      world.textures.emplace_back(
+          paint_wall(wall.texture, length, wall.height_m, kWallTexel, wall.posters, false, random),
+          false);
     const Eigen::Vector3d origin(wall.to.x(), wall.to.y(), foot);
     const Eigen::Vector2d back = wall.from - wall.to;
     world.mesh.add_quad(origin, {back.x(), back.y(), 0.0}, {0.0, 0.0, wall.height_m}, texture,
@@ -73,17 +80,22 @@ Eigen::Isometry3d upright(const Eigen::Vector2d& at, double heading, double z) {
 
 void add_blocks(World& world) {
   std::uint64_t index = 0;
+  std::vector<int> look;  // texture by block
   for (const BlockSpec& block : world.scenario.blocks) {
     Random random(world.scenario.seed, "block", index++);
-    const int texture = static_cast<int>(world.textures.size());
+    const bool copy = block.copy_of >= 0;
+    const int texture = copy ? look[static_cast<std::size_t>(block.copy_of)]
+                             : static_cast<int>(world.textures.size());
+    look.push_back(texture);
     const double wide = block.size.maxCoeff();
     const double texel = block.pillar ? 0.006 : std::max(0.02, block.height_m / 600.0);
     const double z = world.ground.height(block.at.x(), block.at.y()) - (block.pillar ? 0.0 : 0.3);
-    cv::Mat image = block.pillar ? paint_pillar(wide, block.height_m, texel,
-                                                static_cast<int>(index) + 100, random)
-                                 : paint_wall(block.texture, wide, block.height_m, texel, 0,
-                                              block.height_m > 4.0, random);
-    world.textures.emplace_back(std::move(image), false);
+    if (!copy)
+      world.textures.emplace_back(block.pillar ? paint_pillar(wide, block.height_m, texel,
+                                                              static_cast<int>(index) + 100, random)
+                                               : paint_wall(block.texture, wide, block.height_m,
+                                                            texel, 0, block.height_m > 4.0, random),
+                                  false);
     world.mesh.add_box(upright(block.at, block.heading, z),
                        {block.size.x(), block.size.y(), block.height_m}, texture, texel,
                        block.pillar ? SurfaceClass::kPillar : SurfaceClass::kBuilding);
@@ -98,38 +110,18 @@ void add_columns(World& world) {
     variants.push_back(static_cast<int>(world.textures.size()));
     world.textures.emplace_back(paint_pillar(0.16, 2.9, 0.006, 10 * i + 7, random), false);
   }
+  constexpr std::array<double, 3> kAlong{0.06, 0.5, 0.94};
+  std::vector<std::array<std::size_t, kAlong.size()>> looks;  // variants by line
   for (const SpaceLine& line : world.layout.lines) {
+    auto& look = looks.emplace_back();
     if (!line.column) continue;
-    for (const double f : {0.06, 0.5, 0.94}) {
-      const Eigen::Vector2d at = line.front + f * (line.back - line.front);
+    for (std::size_t i = 0; i < kAlong.size(); ++i) {
+      const Eigen::Vector2d at = line.front + kAlong[i] * (line.back - line.front);
+      look[i] = line.copy_of >= 0 ? looks[static_cast<std::size_t>(line.copy_of)][i]
+                                  : static_cast<std::size_t>(random.below(3));
       world.mesh.add_box(upright(at, 0.0, world.ground.height(at.x(), at.y())), {0.16, 0.16, 2.9},
-                         variants[random.below(3)], 0.006, SurfaceClass::kPillar, 1.2);
+                         variants[look[i]], 0.006, SurfaceClass::kPillar, 1.2);
     }
-  }
-}
-
-void add_ceiling(World& world) {
-  if (!world.scenario.ceiling) return;
-  const CeilingSpec& ceiling = *world.scenario.ceiling;
-  const GroundSpec& spec = world.scenario.ground;
-  Random random(world.scenario.seed, "ceiling");
-  world.lamp_texture = static_cast<int>(world.textures.size());
-  world.ceiling_m = ceiling.height_m;
-  world.ceiling_low = spec.low;
-  world.textures.emplace_back(
-      paint_ceiling(ceiling, spec.low, spec.high, world.ceiling_texel_m, random), false);
-  const Eigen::Vector2d size = spec.high - spec.low;
-  world.mesh.add_quad({spec.low.x(), spec.low.y(), ceiling.height_m}, {size.x(), 0.0, 0.0},
-                      {0.0, size.y(), 0.0}, world.lamp_texture, world.ceiling_texel_m,
-                      SurfaceClass::kCeiling);
-  // Beams give the ceiling depth.
-  const int beam = static_cast<int>(world.textures.size());
-  world.textures.emplace_back(
-      paint_wall(SurfaceTexture::kConcrete, size.y(), 0.4, kWallTexel, 0, false, random), false);
-  for (double x = spec.low.x() + 2.0; x < spec.high.x(); x += 5.5) {
-    Eigen::Isometry3d T =
-        upright({x, 0.5 * (spec.low.y() + spec.high.y())}, 0.0, ceiling.height_m - 0.35);
-    world.mesh.add_box(T, {0.3, size.y(), 0.36}, beam, kWallTexel, SurfaceClass::kCeiling, 0.9);
   }
 }
 
@@ -245,8 +237,8 @@ World make_world(const Scenario& scenario,
   Random stones(scenario.seed, "stones");
   world.fine_stones = Texture(speckle_tile(1024, 60000, 1, 4, 20.0, stones), true);
   world.coarse_stones = Texture(speckle_tile(1024, 30000, 1, 5, 16.0, stones), true);
-  for (const auto add : {add_ground, add_walls, add_blocks, add_columns, add_ceiling, add_cars,
-                         add_cloth, add_roadside}) {
+  for (const auto add : {add_ground, add_walls, add_blocks, add_columns, add_ceilings, add_cars,
+                         add_upper_storeys, add_cloth, add_roadside}) {
     report(progress, "world", 0, 1);
     add(world);
   }
