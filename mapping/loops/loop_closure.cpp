@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <optional>
 #include <string>
 
 #include "base/parallel.hpp"
+#include "mapping/loops/corner_matches.hpp"
+#include "mapping/loops/odometry_check.hpp"
 #include "mapping/loops/place_recognition.hpp"
-#include "vo/feature_grid.hpp"
+#include "mapping/union_find.hpp"
 #include "vo/rig_pose.hpp"
 
 namespace roadbook {
@@ -18,111 +19,6 @@ namespace {
 constexpr double kSameWayRad =
     0.8;  // headings by odometry closer than this: each camera sees what it saw
 constexpr double kInformationDiscount = 25.0;  // corners of one view share the errors of its points
-
-// A corner of the earlier keyframe with its place in that keyframe's vehicle frame.
-struct KnownCorner {
-  int camera;
-  int feature;
-  Eigen::Vector3d p_vehicle;
-  const Descriptor* descriptor;
-};
-
-std::vector<KnownCorner> known_corners(const VoResult& odometry, int keyframe) {
-  std::vector<KnownCorner> corners;
-  const VoKeyframe& k = odometry.keyframes[static_cast<std::size_t>(keyframe)];
-  const Eigen::Isometry3d T_vehicle_odom = k.T_odom_vehicle.inverse();
-  for (std::size_t c = 0; c < k.features.size(); ++c)
-    for (std::size_t f = 0; f < k.features[c].size(); ++f) {
-      const int id = k.tracks[c][f];
-      if (id < 0) continue;
-      const auto& p = odometry.tracks[static_cast<std::size_t>(id)].p_odom;
-      if (!p) continue;
-      const Eigen::Vector3d p_vehicle = T_vehicle_odom * *p;
-      if (p_vehicle.norm() > 60.0) continue;  // says nothing about the position
-      corners.push_back(
-          {static_cast<int>(c), static_cast<int>(f), p_vehicle, &k.features[c].descriptors[f]});
-    }
-  return corners;
-}
-
-struct CornerMatch {
-  int corner;
-  int camera;  // in the later keyframe
-  int feature;
-};
-
-// Nearest descriptor; of several corners that choose one feature the nearest. A place may be passed
-// the other way round, so that another camera sees it: then all cameras are searched.
-std::vector<CornerMatch> match_by_descriptor(const std::vector<KnownCorner>& corners,
-                                             const VoKeyframe& later,
-                                             bool any_camera,
-                                             const LoopOptions& options) {
-  struct Owner {
-    int corner = -1;
-    int distance = std::numeric_limits<int>::max();
-  };
-  std::vector<std::vector<Owner>> owners(later.features.size());
-  for (std::size_t c = 0; c < later.features.size(); ++c)
-    owners[c].resize(later.features[c].size());
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    NearestDescriptor best;
-    std::size_t best_camera = 0;
-    for (std::size_t c = 0; c < later.features.size(); ++c) {
-      if (!any_camera && static_cast<int>(c) != corners[i].camera) continue;
-      const auto near = nearest_descriptor(*corners[i].descriptor, later.features[c].descriptors);
-      const int second =
-          std::min({near.second, std::max(near.distance, best.distance), best.second});
-      if (near.distance < best.distance) {
-        best = near;
-        best_camera = c;
-      }
-      best.second = second;
-    }
-    if (best.index < 0 || best.distance > options.max_hamming ||
-        best.distance > options.max_ratio * best.second)
-      continue;
-    Owner& owner = owners[best_camera][static_cast<std::size_t>(best.index)];
-    if (best.distance < owner.distance) owner = {static_cast<int>(i), best.distance};
-  }
-  std::vector<CornerMatch> matches;
-  for (std::size_t c = 0; c < owners.size(); ++c)
-    for (std::size_t f = 0; f < owners[c].size(); ++f)
-      if (owners[c][f].corner >= 0)
-        matches.push_back({owners[c][f].corner, static_cast<int>(c), static_cast<int>(f)});
-  return matches;
-}
-
-// With the pose known, every corner has a place to be looked for.
-std::vector<CornerMatch> match_by_pose(const Rig& rig,
-                                       const std::vector<KnownCorner>& corners,
-                                       const VoKeyframe& later,
-                                       const Eigen::Isometry3d& T_later_earlier,
-                                       double radius_px) {
-  std::vector<CornerMatch> matches;
-  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
-    const auto& mounted = rig.cameras[c];
-    const FeatureGrid grid(later.features[c].pixels, mounted.camera.width, mounted.camera.height);
-    const Eigen::Isometry3d T_camera_earlier = mounted.T_vehicle_camera.inverse() * T_later_earlier;
-    std::vector<int> taken(later.features[c].size(), -1);
-    std::vector<int> distance_of(later.features[c].size(), 140);
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const auto pixel = mounted.camera.project(T_camera_earlier * corners[i].p_vehicle);
-      if (!pixel || !mounted.camera.contains(*pixel)) continue;
-      grid.for_each_near(*pixel, radius_px, [&](int f) {
-        const auto feature = static_cast<std::size_t>(f);
-        const int distance =
-            hamming(*corners[i].descriptor, later.features[c].descriptors[feature]);
-        if (distance < distance_of[feature]) {
-          distance_of[feature] = distance;
-          taken[feature] = static_cast<int>(i);
-        }
-      });
-    }
-    for (std::size_t f = 0; f < taken.size(); ++f)
-      if (taken[f] >= 0) matches.push_back({taken[f], static_cast<int>(c), static_cast<int>(f)});
-  }
-  return matches;
-}
 
 std::vector<RigObservation> observations_of(const std::vector<CornerMatch>& matches,
                                             const std::vector<KnownCorner>& corners,
@@ -149,7 +45,8 @@ LoopClosure verify(const Rig& rig,
   loop.edge.to = later;
   const VoKeyframe& later_keyframe = odometry.keyframes[static_cast<std::size_t>(later)];
   const auto corners = known_corners(odometry, earlier);
-  auto matches = match_by_descriptor(corners, later_keyframe, any_camera, options);
+  auto matches = match_by_descriptor(corners, later_keyframe, any_camera,
+                                     {options.max_hamming, options.max_ratio});
   const int min_inliers =
       rig.cameras.size() > 1 ? options.min_inliers : 2 * options.min_inliers / 3;
   RigPoseOptions pose_options;
@@ -208,10 +105,12 @@ bool edges_agree(const VoResult& odometry, const LoopEdge& a, const LoopEdge& b)
          so3_log(difference.linear()).norm() < 0.05 + 0.02 * path;
 }
 
-void require_agreement(const VoResult& odometry,
-                       const LoopOptions& options,
-                       std::vector<LoopClosure>& loops) {
+// Returns the number of each loop's stretch: neighbours that agree, and the neighbours of these.
+std::vector<int> require_agreement(const VoResult& odometry,
+                                   const LoopOptions& options,
+                                   std::vector<LoopClosure>& loops) {
   constexpr int kNeighbours = 12;
+  UnionFind stretches(loops.size());
   std::vector<std::uint8_t> supported(loops.size(), 0);
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (!loops[i].edge.accepted) continue;
@@ -220,7 +119,9 @@ void require_agreement(const VoResult& odometry,
       if (!loops[j].edge.accepted || loops[j].edge.to == loops[i].edge.to ||
           std::abs(loops[j].edge.from - loops[i].edge.from) > 3 * kNeighbours)
         continue;
-      if (edges_agree(odometry, loops[i].edge, loops[j].edge)) supported[i] = supported[j] = 1;
+      if (!edges_agree(odometry, loops[i].edge, loops[j].edge)) continue;
+      supported[i] = supported[j] = 1;
+      stretches.join(static_cast<int>(i), static_cast<int>(j));
     }
   }
   for (std::size_t i = 0; i < loops.size(); ++i) {
@@ -229,6 +130,30 @@ void require_agreement(const VoResult& odometry,
     edge.accepted = supported[i] || edge.inliers >= 3 * options.min_inliers;
     edge.reason = edge.accepted ? std::to_string(edge.inliers) + " corners agree"
                                 : "no neighbouring revisit agrees";
+  }
+  return stretches.numbers();
+}
+
+// Drives without wheels are not judged: their scale may drift.
+void reject_by_odometry(const MappingInput& input,
+                        const std::vector<int>& stretches,
+                        std::vector<LoopClosure>& loops) {
+  std::vector<std::size_t> judged;
+  std::vector<LoopEdge> edges;
+  std::vector<int> stretch;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    const LoopEdge& edge = loops[i].edge;
+    const int session = input.session[static_cast<std::size_t>(edge.to)];
+    if (!edge.accepted || !input.has_wheels[static_cast<std::size_t>(session)]) continue;
+    judged.push_back(i);
+    edges.push_back(edge);
+    stretch.push_back(stretches[i]);
+  }
+  const auto contradicts = contradict_odometry(input.odometry.keyframes, edges, stretch);
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (contradicts[k] == 0) continue;
+    loops[judged[k]].edge.accepted = false;
+    loops[judged[k]].edge.reason = "the odometry contradicts its height or tilt (another storey?)";
   }
 }
 
@@ -244,15 +169,43 @@ std::vector<int> segments_of(const std::vector<VoKeyframe>& keyframes) {
   return segments;
 }
 
+std::vector<LoopClosure> verify_loops(const MappingInput& input,
+                                      const std::vector<KeyframePair>& pairs,
+                                      const LoopOptions& options,
+                                      const Progress& progress) {
+  const auto& keyframes = input.odometry.keyframes;
+  const auto segments = segments_of(keyframes);
+  std::vector<LoopClosure> loops(pairs.size());
+  const auto verify_pair = [&](std::size_t i) {
+    const auto earlier = static_cast<std::size_t>(pairs[i].earlier);
+    const auto later = static_cast<std::size_t>(pairs[i].later);
+    const Eigen::Isometry3d T =
+        keyframes[earlier].T_odom_vehicle.inverse() * keyframes[later].T_odom_vehicle;
+    const bool has_wheels = input.has_wheels[static_cast<std::size_t>(input.session[later])];
+    const bool same_way =
+        segments[earlier] == segments[later] && has_wheels && std::abs(heading_of(T)) < kSameWayRad;
+    loops[i] = verify(input.rig_of(pairs[i].later), input.odometry, pairs[i].earlier,
+                      pairs[i].later, !same_way, options);
+  };
+  constexpr std::size_t kBlock = 96;
+  for (std::size_t begin = 0; begin < pairs.size(); begin += kBlock) {
+    const std::size_t count = std::min(kBlock, pairs.size() - begin);
+    parallel_for(count, options.num_threads, [&](std::size_t i) { verify_pair(begin + i); });
+    report(progress, "loops", begin + count, pairs.size());
+  }
+  const std::vector<int> stretches = require_agreement(input.odometry, options, loops);
+  reject_by_odometry(input, stretches, loops);
+  return loops;
+}
+
 std::vector<LoopClosure> find_loops(const MappingInput& input,
                                     const LoopOptions& options,
                                     const Progress& progress) {
-  const VoResult& odometry = input.odometry;
-  const auto& keyframes = odometry.keyframes;
+  const auto& keyframes = input.odometry.keyframes;
   const auto segments = segments_of(keyframes);
   const PlaceIndex index(keyframes, options.num_threads);
-  std::vector<std::vector<LoopClosure>> found(keyframes.size());
-  const auto search = [&](std::size_t k) {
+  std::vector<std::vector<PlaceCandidate>> similar(keyframes.size());
+  parallel_for(keyframes.size(), options.num_threads, [&](std::size_t k) {
     const bool has_wheels = input.has_wheels[static_cast<std::size_t>(input.session[k])];
     const double drift = has_wheels ? options.drift_fraction : options.drift_fraction_blind;
     const auto allowed = [&](int earlier) {
@@ -264,28 +217,13 @@ std::vector<LoopClosure> find_loops(const MappingInput& input,
           (keyframes[k].T_odom_vehicle.translation() - other.T_odom_vehicle.translation()).norm();
       return apart < options.gate_m + drift * travelled;
     };
-    for (const auto& candidate :
-         index.similar(static_cast<int>(k), allowed, options.candidates, options.suppress)) {
-      const auto earlier = static_cast<std::size_t>(candidate.keyframe);
-      const Eigen::Isometry3d T =
-          keyframes[earlier].T_odom_vehicle.inverse() * keyframes[k].T_odom_vehicle;
-      const bool same_way =
-          segments[earlier] == segments[k] && has_wheels && std::abs(heading_of(T)) < kSameWayRad;
-      found[k].push_back(verify(input.rig_of(static_cast<int>(k)), odometry, candidate.keyframe,
-                                static_cast<int>(k), !same_way, options));
-    }
-  };
-  constexpr std::size_t kBlock = 32;
-  for (std::size_t begin = 0; begin < keyframes.size(); begin += kBlock) {
-    const std::size_t count = std::min(kBlock, keyframes.size() - begin);
-    parallel_for(count, options.num_threads, [&](std::size_t i) { search(begin + i); });
-    report(progress, "loops", begin + count, keyframes.size());
-  }
-  std::vector<LoopClosure> loops;
-  for (auto& list : found)
-    for (auto& loop : list) loops.push_back(std::move(loop));
-  require_agreement(odometry, options, loops);
-  return loops;
+    similar[k] = index.similar(static_cast<int>(k), allowed, options.candidates, options.suppress);
+  });
+  std::vector<KeyframePair> pairs;
+  for (std::size_t k = 0; k < similar.size(); ++k)
+    for (const PlaceCandidate& candidate : similar[k])
+      pairs.push_back({candidate.keyframe, static_cast<int>(k)});
+  return verify_loops(input, pairs, options, progress);
 }
 
 }  // namespace roadbook

@@ -44,11 +44,25 @@ struct LoopClosure {
 /// For each keyframe the index of its segment, counted from 0. A new segment begins after each gap.
 [[nodiscard]] std::vector<int> segments_of(const std::vector<VoKeyframe>& keyframes);
 
-/// Compares every keyframe with the earlier ones. A loop is accepted with enough inliers and a
-/// neighbouring loop that agrees, or with twice the inliers. Deterministic on any number of
-/// threads.
+/// Two keyframes that may show the same place.
+struct KeyframePair {
+  int earlier = 0;
+  int later = 0;
+};
+
+/// Compares every keyframe with the earlier ones and verifies the best candidates (`verify_loops`).
+/// Deterministic on any number of threads.
 [[nodiscard]] std::vector<LoopClosure> find_loops(const MappingInput& input,
                                                   const LoopOptions& options,
                                                   const Progress& progress = {});
+
+/// Verifies each pair by the geometry of the whole rig; `pairs` ascend by their later keyframe. A
+/// loop is accepted with enough inliers and a neighbouring loop that agrees, or with three times
+/// the inliers, unless the odometry contradicts it (mapping/loops/odometry_check.hpp). Returns one
+/// loop a pair. Deterministic on any number of threads.
+[[nodiscard]] std::vector<LoopClosure> verify_loops(const MappingInput& input,
+                                                    const std::vector<KeyframePair>& pairs,
+                                                    const LoopOptions& options,
+                                                    const Progress& progress = {});
 
 }  // namespace roadbook
