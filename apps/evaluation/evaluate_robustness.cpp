@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "apps/evaluate.hpp"
+#include "apps/evaluation/robustness/alike_places.hpp"
+#include "apps/evaluation/robustness/removed_loops.hpp"
 #include "apps/evaluation/robustness/robustness_study.hpp"
 #include "base/error.hpp"
 #include "base/format.hpp"
@@ -43,20 +46,35 @@ struct FaultTally {
   }
 };
 
-std::vector<DriveFault> chosen_faults(const std::string& only) {
-  std::vector<DriveFault> all = wheel_faults();
-  for (DriveFault& fault : camera_faults()) all.push_back(std::move(fault));
+/// A place that looks alike, by the name of its study.
+struct AlikeStudy {
+  std::string name;
+  std::string scenario;
+};
+
+/// What to study.
+struct Chosen {
+  std::vector<DriveFault> faults;
+  std::vector<AlikeStudy> alike;
+};
+
+Chosen chosen_studies(const std::string& only) {
+  Chosen all{wheel_faults(), {{"alike: two storeys", "storeys"}, {"alike: equal bays", "bays"}}};
+  for (DriveFault& fault : camera_faults()) all.faults.push_back(std::move(fault));
   if (only.empty()) return all;
-  std::vector<DriveFault> chosen;
-  for (const DriveFault& fault : all)
-    for (const std::string_view beginning : split(only))
-      if (fault.name.starts_with(beginning)) {
-        chosen.push_back(fault);
-        break;
-      }
-  if (!chosen.empty()) return chosen;
+  const auto is_chosen = [&](const auto& study) {
+    const auto beginnings = split(only);
+    return std::any_of(beginnings.begin(), beginnings.end(), [&](const std::string_view beginning) {
+      return study.name.starts_with(beginning);
+    });
+  };
+  Chosen chosen;
+  std::copy_if(all.faults.begin(), all.faults.end(), std::back_inserter(chosen.faults), is_chosen);
+  std::copy_if(all.alike.begin(), all.alike.end(), std::back_inserter(chosen.alike), is_chosen);
+  if (!chosen.faults.empty() || !chosen.alike.empty()) return chosen;
   std::string names;
-  for (const DriveFault& fault : all) names += (names.empty() ? "" : "; ") + fault.name;
+  for (const DriveFault& fault : all.faults) names += (names.empty() ? "" : "; ") + fault.name;
+  for (const AlikeStudy& study : all.alike) names += "; " + study.name;
   throw InvalidOption("--only", "'" + only + "'", "what names of faults begin with: " + names);
 }
 
@@ -119,14 +137,79 @@ ordered_json clean_json(const CleanRun& clean) {
           {"messages", clean.messages}};
 }
 
+std::string count_text(const LoopCount& count) {
+  return std::to_string(count.all) + " (" + std::to_string(count.wrong) + " false)";
+}
+
+ordered_json count_json(const LoopCount& count) {
+  return {{"all", count.all}, {"false", count.wrong}};
+}
+
+ordered_json judged_json(const AlikeResult& result) {
+  return {{"candidates", result.candidates},         {"forced", result.forced},
+          {"verified", count_json(result.verified)}, {"accepted", count_json(result.accepted)},
+          {"kept", count_json(result.kept)},         {"largest_bend_m", result.largest_bend_m}};
+}
+
+std::string judged_text(const AlikeResult& result) {
+  return std::to_string(result.candidates) + " candidates, verified " +
+         count_text(result.verified) + ", accepted " + count_text(result.accepted) + ", kept " +
+         count_text(result.kept) + "; poses bent by " + fixed(result.largest_bend_m, 3) + " m";
+}
+
+/// Maps one drive through a place that looks alike, offers it pairs of alike places, and removes
+/// loops.
+ordered_json run_alike(const AlikeStudy& study,
+                       std::uint64_t seed,
+                       const EvaluateCommand& command,
+                       Console& console) {
+  constexpr int kForced = 1000;
+  const std::size_t removals = command.quick ? 3 : 10;
+  MapOptions options;
+  options.num_threads = command.threads;
+  AlikeDrive drive =
+      drive_alike_place({.scenario = study.scenario, .size = command.quick ? "small" : "full"},
+                        seed, command.threads, console.progress());
+  const AlikeResult own = judge_loops(drive, 0, options, console.progress());
+  const AlikeResult forced = judge_loops(drive, kForced, options, console.progress());
+  const LoopedMap map = map_with_loops(std::move(drive.input), options, console.progress());
+  RemovedLoop graph, bundle;
+  const auto keep_largest = [](const RemovedLoop& one, RemovedLoop& largest) {
+    largest.position = std::max(largest.position, one.position);
+    largest.heading = std::max(largest.heading, one.heading);
+  };
+  for (const std::size_t loop : drawn_loops(map, removals, seed)) {
+    keep_largest(remove_loop(map, loop, false, options), graph);
+    keep_largest(remove_loop(map, loop, true, options), bundle);
+  }
+  const std::string name = study.name + ", seed " + std::to_string(seed) + ": ";
+  console.say(name + judged_text(own));
+  console.say(name + std::to_string(forced.forced) +
+              " alike pairs offered: " + judged_text(forced));
+  console.say(name + "without one loop, poses move by at most " + fixed(graph.position, 2) +
+              " sigma in the pose graph (heading " + fixed(graph.heading, 2) + ") and " +
+              fixed(bundle.position, 2) + " in the map (heading " + fixed(bundle.heading, 2) + ")");
+  std::cout.flush();
+  return {{"place", study.name},
+          {"seed", seed},
+          {"own", judged_json(own)},
+          {"offered", judged_json(forced)},
+          {"without_one_loop",
+           {{"graph_position_sigma", graph.position},
+            {"graph_heading_sigma", graph.heading},
+            {"map_position_sigma", bundle.position},
+            {"map_heading_sigma", bundle.heading}}}};
+}
+
 void run_robustness(Console& console, const EvaluateCommand& command) {
-  const std::vector<DriveFault> faults = chosen_faults(command.only);
+  const Chosen chosen = chosen_studies(command.only);
+  const std::vector<DriveFault>& faults = chosen.faults;
   const int drives = command.repeats > 0 ? command.repeats : command.quick ? 1 : kDrives;
   RobustnessDrive place;
   if (!command.quick) place.size = "full";
   std::vector<FaultTally> tallies(faults.size());
   ordered_json clean = ordered_json::array();
-  for (int i = 0; i < drives; ++i) {
+  for (int i = 0; i < drives && !faults.empty(); ++i) {
     const RobustnessResult result =
         study_robustness(place, faults, command.seed + static_cast<std::uint64_t>(i),
                          command.threads, console.progress());
@@ -142,11 +225,17 @@ void run_robustness(Console& console, const EvaluateCommand& command) {
     say_fault(tally, console);
     list.push_back(fault_json(tally));
   }
+  ordered_json alike = ordered_json::array();
+  for (const AlikeStudy& study : chosen.alike)
+    for (int i = 0; i < drives; ++i)
+      alike.push_back(
+          run_alike(study, command.seed + static_cast<std::uint64_t>(i), command, console));
   const ordered_json json{{"experiment", "robustness"},
                           {"seed", command.seed},
                           {"place", place.scenario + ", " + place.size},
                           {"clean", clean},
-                          {"faults", list}};
+                          {"faults", list},
+                          {"alike_places", alike}};
   write_whole_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
@@ -155,8 +244,8 @@ void run_robustness(Console& console, const EvaluateCommand& command) {
 
 Experiment robustness_experiment() {
   return {"robustness",
-          "what map makes of damaged recordings and wrong calibrations (--only: beginnings of "
-          "names of faults)",
+          "what map makes of damaged recordings, wrong calibrations and places that look alike "
+          "(--only: beginnings of names of faults)",
           run_robustness};
 }
 

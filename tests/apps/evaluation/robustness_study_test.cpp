@@ -7,7 +7,9 @@
 #include <map>
 #include <numbers>
 
+#include "apps/evaluation/robustness/alike_places.hpp"
 #include "apps/evaluation/robustness/recorded_table.hpp"
+#include "apps/evaluation/robustness/removed_loops.hpp"
 #include "base/messages.hpp"
 #include "base/temporary_folder.hpp"
 #include "mapping/store/map_file.hpp"
@@ -161,6 +163,34 @@ TEST(Robustness, NoLandmarkStaysOnMovingThings) {
   EXPECT_EQ(standing, 0);
   EXPECT_GT(views.size(), 500U);
   EXPECT_LT(summary.ate_median_m.value(), 0.03);
+}
+
+// The upper of two equal storeys: every corner looks as below, and all false loops agree.
+TEST(AlikePlaces, NoLoopJoinsTwoStoreys) {
+  const AlikeDrive drive = drive_alike_place({.scenario = "storeys", .size = "small"}, 1, 0);
+  const AlikeResult result = judge_loops(drive, 200, {});
+  EXPECT_GT(result.verified.wrong, 20);
+  EXPECT_EQ(result.kept.wrong, 0);
+  EXPECT_LT(result.largest_bend_m, 1e-6);
+}
+
+// Equal bays beside each other: the drive ends where it began, so that true loops lie among false
+// ones. No true loop may carry the map alone.
+TEST(AlikePlaces, NoLoopJoinsTwoBaysAndNoneCarriesTheMapAlone) {
+  AlikeDrive drive = drive_alike_place({.scenario = "bays", .size = "small"}, 1, 0);
+  const MapOptions options;
+  const AlikeResult result = judge_loops(drive, 100, options);
+  EXPECT_GT(result.verified.wrong, 10);
+  EXPECT_EQ(result.kept.wrong, 0);
+  EXPECT_GT(result.kept.all, 5);
+  const LoopedMap map = map_with_loops(std::move(drive.input), options);
+  const auto loops = drawn_loops(map, 4, 1);
+  ASSERT_FALSE(loops.empty());
+  for (const std::size_t loop : loops) {
+    const RemovedLoop removed = remove_loop(map, loop, loop == loops.front(), options);
+    EXPECT_LT(removed.position, 3.0);
+    EXPECT_LT(removed.heading, 3.0);
+  }
 }
 
 }  // namespace
