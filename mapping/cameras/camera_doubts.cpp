@@ -120,10 +120,12 @@ Wording wording_of(const CameraFit& fit) {
 
 CameraDoubt doubt_of(const CameraEvidence& evidence, const std::vector<const CameraFit*>& fits) {
   const Wording first = wording_of(*fits.front());
-  CameraDoubt doubt{evidence.session, evidence.camera, first.field, first.got, first.want};
+  CameraDoubt doubt{evidence.session, evidence.camera, first.field,
+                    first.got,        first.want,      {fits.front()->errors}};
   for (std::size_t i = 1; i < fits.size(); ++i) {
     const Wording other = wording_of(*fits[i]);
     doubt.got += std::string("; or ") + other.field + " " + other.got;
+    doubt.errors.push_back(fits[i]->errors);
   }
   return doubt;
 }

@@ -20,6 +20,8 @@ struct CameraDoubt {
   std::string field;  ///< in the warning: "focal length", "images", ...
   std::string got;
   std::string want;
+  std::vector<CameraErrors> errors =
+      {};  ///< sizes of each parameter that is named, likeliest first
 };
 
 /// Evidence about one camera.

@@ -73,7 +73,8 @@ void BundleLayout::add_terms(const BundleProblem& problem,
     point_free[p] = !point.fixed && begin[p + 1] > begin[p];
     for (std::size_t k = begin[p]; k < begin[p + 1]; ++k) {
       const BundleObservation& o = problem.observations[order[k]];
-      terms.push_back({o.pose, o.camera, -1, o.pixel, 1.0 / o.sigma_px});
+      terms.push_back(
+          {o.pose, o.camera, -1, o.pixel, 1.0 / o.sigma_px, static_cast<int>(order[k])});
     }
     if (point_free[p] != 0 && point.ground && point.ground_pose >= 0) {
       terms.push_back({point.ground_pose, BundleTerm::kGround, -1,

@@ -28,6 +28,7 @@ struct BundleTerm {
   int link = -1;  ///< the (landmark, pose) pair it informs; -1: landmark or pose does not move
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< of a ground point: (height, 0)
   double inv_sigma = 1.0;
+  int observation = -1;  ///< of the problem; -1: a ground height
 };
 
 using Matrix26d = Eigen::Matrix<double, 2, 6>;

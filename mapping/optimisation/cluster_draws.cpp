@@ -1,6 +1,7 @@
 #include "mapping/optimisation/cluster_draws.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -25,17 +26,17 @@ Random stream(const ClusterData& data, const char* name, std::uint64_t index, in
   return {data.clusters.seed + 1000 * static_cast<std::uint64_t>(chunk), name, index};
 }
 
-// The words of all cameras, the ground and the wheels at the places of all poses.
-class PlaceWords {
+// The signs of all cameras, the ground and the wheels at the places of all poses.
+class PlaceSigns {
  public:
-  PlaceWords(const ClusterData& data, int chunk)
+  PlaceSigns(const ClusterData& data, int chunk)
       : sensors_(static_cast<int>(data.problem.cameras.size()) - kWheels) {
     for (std::size_t k = 0; k < data.state.poses.size(); ++k)
       for (int s = 0; s < sensors_; ++s)
         words_.push_back(
             stream(data, "place", place_of(data, static_cast<int>(k), s + kWheels), chunk)());
   }
-  [[nodiscard]] Signs signs(int pose, int camera) const {
+  [[nodiscard]] Signs of(int pose, int camera) const {
     return signs_of(words_[at(pose * sensors_ + camera - kWheels)]);
   }
 
@@ -44,49 +45,76 @@ class PlaceWords {
   std::vector<std::uint64_t> words_;
 };
 
-void draw_points(const ClusterData& data, int chunk, const PlaceWords& places, Panel& poses) {
-  const double noise = std::sqrt(data.chi2);
+// Right-hand sides of one chunk, one column for each draw.
+struct Scores {
+  Panel poses;
+  Panel scales;
+
+  Scores(std::size_t variables, Eigen::Index free)
+      : poses(Panel::Zero(row_of(variables), kDraws)), scales(Panel::Zero(free, kDraws)) {}
+  void add(const MotionScore& motion, const Eigen::Matrix<double, 13, kDraws>& sum) {
+    if (motion.from >= 0) poses.middleRows<6>(row_of(at(motion.from))) += sum.topRows<6>();
+    if (motion.to >= 0) poses.middleRows<6>(row_of(at(motion.to))) += sum.middleRows<6>(6);
+    if (motion.scale >= 0) scales.row(motion.scale) += sum.row(12);
+  }
+};
+
+struct PartScores {
+  Scores landmarks, places, both;
+  PartScores(std::size_t variables, Eigen::Index free)
+      : landmarks(variables, free), places(variables, free), both(variables, free) {}
+};
+
+void draw_points(const ClusterData& data, int chunk, const PlaceSigns& places, PartScores& parts) {
+  Panel residuals;
   for (std::size_t p = 0; p < data.problem.points.size(); ++p) {
     const PointTerms point = point_terms(data.problem, data.layout, data.options, data.state, p);
     if (point.terms.empty()) continue;
-    Random random = stream(data, "landmark", p, chunk);
+    const Signs track = signs_of(stream(data, "landmark", p, chunk)());
     const double grown = 1.0 / std::max(0.1, 1.0 - data.leverage[p]);
-    const Signs track = grown * signs_of(random());
-    Panel residuals(2 * static_cast<Eigen::Index>(point.terms.size()), kDraws);
+    Eigen::VectorXd own(2 * static_cast<Eigen::Index>(point.terms.size()));
+    residuals.resize(own.size(), kDraws);
     for (std::size_t t = 0; t < point.terms.size(); ++t) {
       const PointTerms::Term& term = point.terms[t];
-      const Signs together = track + places.signs(term.pose, term.camera);
-      for (int row = 0; row < 2; ++row) {
-        auto out = residuals.row(2 * static_cast<Eigen::Index>(t) + row);
-        out = term.r(row) * together;
-        if (row == 0 || term.camera != BundleTerm::kGround) out += noise * signs_of(random());
-      }
+      const auto row = static_cast<Eigen::Index>(2 * t);
+      own.segment<2>(row) = term.r;
+      residuals.middleRows<2>(row) = term.r * places.of(term.pose, term.camera);
     }
-    add_reduced_scores(point, residuals, poses);
+    const Panel of_landmark = after_landmark(point, own);
+    const Panel of_places = after_landmark(point, residuals);
+    for (std::size_t t = 0; t < point.terms.size(); ++t) {
+      const PointTerms::Term& term = point.terms[t];
+      if (term.variable < 0) continue;
+      const auto row = static_cast<Eigen::Index>(2 * t);
+      const Eigen::Index pose = row_of(at(term.variable));
+      const Vector6d score = grown * term.J_pose.transpose() * of_landmark.middleRows<2>(row);
+      const Eigen::Matrix<double, 6, kDraws, Eigen::RowMajor> of_place =
+          term.J_pose.transpose().lazyProduct(of_places.middleRows<2>(row));
+      parts.landmarks.poses.middleRows<6>(pose) += score.lazyProduct(track);
+      parts.places.poses.middleRows<6>(pose) += of_place;
+      parts.both.poses.middleRows<6>(pose).array() += of_place.array().rowwise() * track.array();
+    }
   }
 }
 
-void draw_motions(
-    const ClusterData& data, int chunk, const PlaceWords& places, Panel& poses, Panel& scales) {
+void draw_motions(const ClusterData& data, int chunk, const PlaceSigns& places, PartScores& parts) {
   for (std::size_t i = 0; i < data.problem.motions.size(); ++i) {
     const MotionConstraint& motion = data.problem.motions[i];
     const MotionScore score = motion_score(data, motion);
     Random random = stream(data, "motion", i, chunk);
     Panel noise(6, kDraws);
     for (int row = 0; row < 6; ++row) noise.row(row) = signs_of(random());
-    const Signs together = places.signs(motion.to, kWheels);
-    const Panel sum = score.root.lazyProduct(noise) + score.score.lazyProduct(together);
-    if (score.from >= 0) poses.middleRows<6>(row_of(at(score.from))) += sum.topRows<6>();
-    if (score.to >= 0) poses.middleRows<6>(row_of(at(score.to))) += sum.middleRows<6>(6);
-    if (score.scale >= 0) scales.row(score.scale) += sum.row(12);
+    parts.landmarks.add(score, score.root.lazyProduct(noise));
+    parts.places.add(score, score.score.lazyProduct(places.of(motion.to, kWheels)));
+    parts.both.add(score, score.score.lazyProduct(signs_of(random())));
   }
 }
 
-void draw_priors(const ClusterData& data, int chunk, Panel& poses, Panel& scales) {
+void draw_priors(const ClusterData& data, int chunk, Scores& scores) {
   const std::vector<int> rows = free_scales(data.problem);
   for (std::size_t s = 0; s < rows.size(); ++s)
     if (rows[s] >= 0)
-      scales.row(rows[s]) +=
+      scores.scales.row(rows[s]) +=
           signs_of(stream(data, "scale", s, chunk)()) / data.problem.scales[s].prior_sigma;
   for (std::size_t i = 0; i < data.problem.priors.size(); ++i) {
     const PosePrior& prior = data.problem.priors[i];
@@ -98,8 +126,43 @@ void draw_priors(const ClusterData& data, int chunk, Panel& poses, Panel& scales
     const MotionResidual e = motion_residual(
         Eigen::Isometry3d::Identity(), data.state.poses[at(prior.pose)], prior.T_map_vehicle, 1.0);
     const Matrix6d U = prior.information.llt().matrixU();
-    poses.middleRows<6>(row_of(at(v))) += (e.J_to.transpose() * U.transpose()).lazyProduct(noise);
+    scores.poses.middleRows<6>(row_of(at(v))) +=
+        (e.J_to.transpose() * U.transpose()).lazyProduct(noise);
   }
+}
+
+// The covariance of one part.
+DrawnCovariance covariance_of(const BundleSystem& system,
+                              double share,
+                              std::vector<Scores>& draws) {
+  const auto variables = static_cast<std::size_t>(draws.front().poses.rows() / 6);
+  const Eigen::Index free = draws.front().scales.rows();
+  DrawnCovariance result{std::vector<Matrix6d>(variables, Matrix6d::Zero()),
+                         std::vector<double>(static_cast<std::size_t>(free), 0.0)};
+  for (Scores& chunk : draws) {
+    system.solve_reduced(chunk.poses, chunk.scales);
+    for (std::size_t v = 0; v < variables; ++v) {
+      const Eigen::Matrix<double, 6, kDraws> x = chunk.poses.middleRows<6>(row_of(v));
+      result.poses[v].noalias() += share * x * x.transpose();
+    }
+    for (Eigen::Index s = 0; s < free; ++s)
+      result.scale_variances[static_cast<std::size_t>(s)] +=
+          share * chunk.scales.row(s).squaredNorm();
+    chunk.poses.resize(0, 0);
+  }
+  return result;
+}
+
+// A plus the part of B that is positive where A is the unit (Cameron, Gelbach and Miller 2011,
+// section 2.3, drop negative eigenvalues).
+Matrix6d plus_positive_part(const Matrix6d& A, const Matrix6d& B) {
+  const Eigen::LLT<Matrix6d> llt(A);
+  if (llt.info() != Eigen::Success) return A;
+  const Matrix6d inverse = llt.matrixL().solve(Matrix6d::Identity());
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(inverse * B * inverse.transpose());
+  const Matrix6d axes = Matrix6d(llt.matrixL()) * solver.eigenvectors();
+  const Vector6d sizes = solver.eigenvalues().cwiseMax(0.0) + Vector6d::Ones();
+  return axes * sizes.asDiagonal() * axes.transpose();
 }
 
 }  // namespace
@@ -147,32 +210,31 @@ DrawnCovariance drawn_covariance(const ClusterData& data, const BundleSystem& sy
   const std::size_t variables = data.layout.pose_of.size();
   const std::vector<int> rows = free_scales(data.problem);
   const Eigen::Index free = std::count_if(rows.begin(), rows.end(), [](int r) { return r >= 0; });
-  DrawnCovariance result{std::vector<Matrix6d>(variables, Matrix6d::Zero()),
-                         std::vector<double>(static_cast<std::size_t>(free), 0.0)};
   const int chunks = data.clusters.cases / kDraws;
-  std::vector<Panel> poses(at(chunks));
-  std::vector<Panel> scales(at(chunks));
+  std::vector<Scores> landmarks(at(chunks), Scores(0, 0));
+  std::vector<Scores> places = landmarks;
+  std::vector<Scores> both = landmarks;
   parallel_for(at(chunks), data.options.num_threads, [&](std::size_t c) {
-    poses[c] = Panel::Zero(row_of(variables), kDraws);
-    scales[c] = Panel::Zero(free, kDraws);
     const int chunk = static_cast<int>(c);
-    const PlaceWords places(data, chunk);
-    draw_points(data, chunk, places, poses[c]);
-    draw_motions(data, chunk, places, poses[c], scales[c]);
-    draw_priors(data, chunk, poses[c], scales[c]);
+    const PlaceSigns signs(data, chunk);
+    PartScores parts(variables, free);
+    draw_points(data, chunk, signs, parts);
+    draw_motions(data, chunk, signs, parts);
+    draw_priors(data, chunk, parts.landmarks);
+    landmarks[c] = std::move(parts.landmarks);
+    places[c] = std::move(parts.places);
+    both[c] = std::move(parts.both);
   });
   // The inverse of a covariance drawn from n cases is too large by n / (n - 7) in the mean.
   const double share = 1.0 / static_cast<double>(data.clusters.cases - 7);
-  for (std::size_t c = 0; c < at(chunks); ++c) {
-    system.solve_reduced(poses[c], scales[c]);
-    for (std::size_t v = 0; v < variables; ++v) {
-      const Eigen::Matrix<double, 6, kDraws> x = poses[c].middleRows<6>(row_of(v));
-      result.poses[v].noalias() += share * x * x.transpose();
-    }
-    for (Eigen::Index s = 0; s < free; ++s)
-      result.scale_variances[static_cast<std::size_t>(s)] += share * scales[c].row(s).squaredNorm();
-    poses[c].resize(0, 0);
-  }
+  DrawnCovariance result = covariance_of(system, share, landmarks);
+  const DrawnCovariance of_places = covariance_of(system, share, places);
+  const DrawnCovariance of_both = covariance_of(system, share, both);
+  for (std::size_t v = 0; v < variables; ++v)
+    result.poses[v] = plus_positive_part(result.poses[v], of_places.poses[v] - of_both.poses[v]);
+  for (std::size_t s = 0; s < result.scale_variances.size(); ++s)
+    result.scale_variances[s] +=
+        std::max(0.0, of_places.scale_variances[s] - of_both.scale_variances[s]);
   return result;
 }
 

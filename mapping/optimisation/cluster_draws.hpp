@@ -17,7 +17,6 @@ struct ClusterData {
   const ClusterOptions& clusters;
   const BundleState& state;
   std::vector<double> leverage;  ///< of each point
-  double chi2 = 1.0;             ///< of independent noise of pixels
 };
 
 /// The cluster of a camera (kWheels: the wheels) at the place of a pose.
@@ -44,7 +43,8 @@ struct DrawnCovariance {
   std::vector<double> scale_variances;
 };
 
-/// Mean of x x^T over the cases (ClusterOptions). `system`: just solved with lambda 0.
+/// C_L plus the positive part of C_P - C_LP (cluster_covariance.hpp). `system`: just solved with
+/// lambda 0.
 [[nodiscard]] DrawnCovariance drawn_covariance(const ClusterData& data, const BundleSystem& system);
 
 }  // namespace roadbook

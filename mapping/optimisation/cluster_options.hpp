@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 namespace roadbook {
 
@@ -13,6 +15,11 @@ struct ClusterOptions {
 
   /// Throws InvalidOption.
   void check() const;
+};
+
+/// An error that all pixels of a camera may share, as a shift of every predicted pixel.
+struct CommonError {
+  std::vector<Eigen::Vector2d> pixels;  ///< of each observation of the problem [px]
 };
 
 }  // namespace roadbook

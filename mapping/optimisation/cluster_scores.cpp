@@ -20,7 +20,8 @@ PointTerms point_terms(const BundleProblem& problem,
     const TermResidual e =
         term_residual(problem, term, state.poses[at(term.pose)], state.points[point], true);
     const double root = std::sqrt(robust_cost(e.r.squaredNorm(), options).weight);
-    result.terms.push_back({layout.variable[at(term.pose)], term.pose, term.camera, root * e.J_pose,
+    result.terms.push_back({layout.variable[at(term.pose)], term.pose, term.camera,
+                            term.observation, root * term.inv_sigma, root * e.J_pose,
                             root * e.J_point, root * e.r});
     const Matrix23d& J = result.terms.back().J_point;
     V.noalias() += J.transpose() * J;
@@ -59,22 +60,27 @@ double leverage_of(const PointTerms& point, BundleSystem& system) {
   return freedom > 0.0 ? std::clamp(trace / freedom, 0.0, 1.0) : 1.0;
 }
 
-void add_reduced_scores(const PointTerms& point,
-                        const BlockCholesky::Panel& residuals,
-                        BlockCholesky::Panel& poses) {
-  const auto rows = [&](std::size_t t) {
-    return residuals.middleRows<2>(static_cast<Eigen::Index>(2 * t));
-  };
+BlockCholesky::Panel after_landmark(const PointTerms& point,
+                                    const BlockCholesky::Panel& residuals) {
+  const auto rows = [](std::size_t t) { return static_cast<Eigen::Index>(2 * t); };
   BlockCholesky::Panel moved = BlockCholesky::Panel::Zero(3, residuals.cols());
   for (std::size_t t = 0; t < point.terms.size(); ++t)
-    moved += point.terms[t].J_point.transpose().lazyProduct(rows(t));
+    moved += point.terms[t].J_point.transpose().lazyProduct(residuals.middleRows<2>(rows(t)));
   moved = point.V_inverse.lazyProduct(moved).eval();
-  BlockCholesky::Panel left(2, residuals.cols());
+  BlockCholesky::Panel left = residuals;
+  for (std::size_t t = 0; t < point.terms.size(); ++t)
+    left.middleRows<2>(rows(t)) -= point.terms[t].J_point.lazyProduct(moved);
+  return left;
+}
+
+void add_scores(const PointTerms& point,
+                const BlockCholesky::Panel& residuals,
+                BlockCholesky::Panel& poses) {
   for (std::size_t t = 0; t < point.terms.size(); ++t) {
     const PointTerms::Term& term = point.terms[t];
     if (term.variable < 0) continue;
-    left = rows(t) - term.J_point.lazyProduct(moved);
-    poses.middleRows<6>(row_of(at(term.variable))) += term.J_pose.transpose().lazyProduct(left);
+    poses.middleRows<6>(row_of(at(term.variable))) += term.J_pose.transpose().lazyProduct(
+        residuals.middleRows<2>(static_cast<Eigen::Index>(2 * t)));
   }
 }
 

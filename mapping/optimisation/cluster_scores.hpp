@@ -17,6 +17,8 @@ struct PointTerms {
     int variable = -1;  ///< pose variable; -1: fixed
     int pose = 0;
     int camera = 0;
+    int observation = -1;      ///< of the problem; -1: a ground height
+    double root_per_px = 0.0;  ///< root of the robust weight over the pixel's standard deviation
     Matrix26d J_pose;
     Matrix23d J_point;
     Eigen::Vector2d r;
@@ -35,10 +37,14 @@ struct PointTerms {
 /// `system`: after pose_covariances.
 [[nodiscard]] double leverage_of(const PointTerms& point, BundleSystem& system);
 
-/// Adds J^T (E - J_point (J_point^T J_point)^-1 J_point^T E) to the rows of the poses, where E are
-/// residuals: two rows for each term, one column for each case.
-void add_reduced_scores(const PointTerms& point,
-                        const BlockCholesky::Panel& residuals,
-                        BlockCholesky::Panel& poses);
+/// Changes of a landmark's residuals, two rows for each term and one column for each case, after
+/// the landmark has moved to fit them: E - J_point (J_point^T J_point)^-1 J_point^T E.
+[[nodiscard]] BlockCholesky::Panel after_landmark(const PointTerms& point,
+                                                  const BlockCholesky::Panel& residuals);
+
+/// Adds J_pose^T E to the rows of the poses, where E are changes of the landmark's residuals.
+void add_scores(const PointTerms& point,
+                const BlockCholesky::Panel& residuals,
+                BlockCholesky::Panel& poses);
 
 }  // namespace roadbook

@@ -11,6 +11,7 @@
 
 #include "drive/drive.hpp"
 #include "mapping/cameras/camera_doubts.hpp"
+#include "mapping/cameras/common_camera_errors.hpp"
 #include "mapping/pieces.hpp"
 #include "mapping/pipeline/checkpoint_blobs.hpp"
 #include "mapping/pipeline/map_gate.hpp"
@@ -269,18 +270,24 @@ void build_from(const std::vector<Drive>& drives,
     summary.warnings.push_back({Severity::kWarning, folders.front().string(), 0, "components",
                                 std::to_string(relaxed.components) + " that no loop closure joins",
                                 "1 (drive through places that two parts share)"});
-  const auto adjusted = clock.run("bundle adjustment",
-                                  [&] { return adjust(input, loops, relaxed, options, progress); });
+  auto adjusted = clock.run("bundle adjustment",
+                            [&] { return adjust(input, loops, relaxed, options, progress); });
 
-  clock.run("cameras", [&] {
+  const auto suspects = clock.run("cameras", [&] {
     summary.cameras = camera_figures(input, drives, adjusted.stage, adjusted.result);
     CameraDoubtOptions doubt;
     doubt.num_threads = options.num_threads;
-    const auto doubts = to_problems(doubt_cameras(input, adjusted.T_map_vehicle, doubt), drives);
+    const auto found = doubt_cameras(input, adjusted.T_map_vehicle, doubt);
+    const auto doubts = to_problems(found, drives);
     const auto idle = warnings_of_idle_cameras(summary.cameras, input, gate, options.gate);
     summary.warnings.insert(summary.warnings.end(), idle.begin(), idle.end());
     summary.warnings.insert(summary.warnings.end(), doubts.begin(), doubts.end());
     require_evidence(input, adjusted, summary.cameras, doubts, gate, options.gate);
+    return found;
+  });
+  clock.run("covariances", [&] {
+    add_covariances(input, relaxed, common_errors_of(suspects, input, adjusted.stage), options,
+                    adjusted);
     return 0;
   });
 

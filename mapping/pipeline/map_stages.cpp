@@ -218,21 +218,29 @@ Adjusted adjust(const MappingInput& input,
     for (std::size_t k = 0; k < adjusted.T_map_vehicle.size(); ++k)
       adjusted.T_map_vehicle[k] = adjusted.stage.problem.poses[k].T_map_vehicle;
   }
-  if (options.covariances)
-    adjusted.covariance =
-        cluster_covariance(adjusted.stage.problem, adjusted.result.inlier,
-                           pieces_of(adjusted.stage.problem, relaxed), stage_options.bundle);
   triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
   // Adjusted positions are better than triangulated ones.
   for (std::size_t p = 0; p < adjusted.stage.problem.points.size(); ++p)
     if (adjusted.result.point_kept[p])
       adjusted.tracks[static_cast<std::size_t>(adjusted.stage.track_of_point[p])].p_map =
           adjusted.stage.problem.points[p].p_map;
-  if (options.covariances)
-    adjusted.landmark_covariance =
-        landmark_covariances(input, adjusted.T_map_vehicle, adjusted.tracks,
-                             options.bundle.feature_sigma_px, options.triangulation);
   return adjusted;
+}
+
+void add_covariances(const MappingInput& input,
+                     const Relaxed& relaxed,
+                     const std::vector<CommonError>& suspected,
+                     const MapOptions& options,
+                     Adjusted& adjusted) {
+  if (!options.covariances) return;
+  BundleOptions bundle = options.bundle.bundle;
+  bundle.num_threads = options.num_threads;
+  adjusted.covariance =
+      cluster_covariance(adjusted.stage.problem, adjusted.result.inlier,
+                         pieces_of(adjusted.stage.problem, relaxed), bundle, {}, suspected);
+  adjusted.landmark_covariance =
+      landmark_covariances(input, adjusted.T_map_vehicle, adjusted.tracks,
+                           options.bundle.feature_sigma_px, options.triangulation);
 }
 
 Map map_of_stages(const MappingInput& input,

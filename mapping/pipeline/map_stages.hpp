@@ -50,7 +50,7 @@ struct Adjusted {
   BundleResult result;
   EqualRowsUsed rows;                       ///< used rows of MapOptions::equal_rows
   ClusterCovariance covariance;             ///< of the poses and of the wheels' factors
-  LandmarkCovariances landmark_covariance;  ///< of `tracks`; empty if not wanted
+  LandmarkCovariances landmark_covariance;  ///< of `tracks`; empty before add_covariances
 };
 
 /// Finds landmarks again in other passes, joins and triangulates tracks, and adjusts poses and
@@ -60,6 +60,14 @@ struct Adjusted {
                               const Relaxed& relaxed,
                               const MapOptions& options,
                               const Progress& progress);
+
+/// Adds the covariances of poses, of the wheels' factors and of landmarks, if `options` want them.
+/// `suspected`: errors of cameras that widen them.
+void add_covariances(const MappingInput& input,
+                     const Relaxed& relaxed,
+                     const std::vector<CommonError>& suspected,
+                     const MapOptions& options,
+                     Adjusted& adjusted);
 
 /// Makes struct Map from the results of all stages: map frames, keyframes, landmarks,
 /// observations, loops. The caller adds the sessions.

@@ -1,0 +1,69 @@
+#include "mapping/cameras/common_camera_errors.hpp"
+
+#include <optional>
+
+#include "base/index.hpp"
+#include "mapping/cameras/principal_point.hpp"
+
+namespace roadbook {
+namespace {
+
+// Pixel of a point by a camera with errors (half-size image); empty where it cannot see the point.
+std::optional<Eigen::Vector2d> predicted(const MountedCamera& mounted,
+                                         const CameraErrors& errors,
+                                         const Eigen::Vector3d& p_vehicle) {
+  const Eigen::Matrix3d R = so3_exp(errors.head<3>()) * mounted.T_vehicle_camera.linear();
+  const Eigen::Vector3d origin = mounted.T_vehicle_camera.translation() + errors.segment<3>(6);
+  const auto pixel = mounted.camera.project(R.transpose() * (p_vehicle - origin));
+  if (!pixel) return std::nullopt;
+  const Eigen::Vector2d centre = principal_point(mounted.camera);
+  return centre + errors.segment<2>(4) + (1.0 + errors[3]) * (*pixel - centre);
+}
+
+// Adds what the errors of one camera do to the pixels that it saw.
+void add_shift(const CameraDoubt& doubt,
+               const CameraErrors& errors,
+               const KeyframeMotion& motion,
+               const BundleStage& stage,
+               CommonError& shift) {
+  const BundleProblem& problem = stage.problem;
+  const int camera = stage.camera_base[at(doubt.session)] + doubt.camera;
+  const MountedCamera& mounted = problem.cameras[at(camera)];
+  shift.pixels.resize(problem.observations.size(), Eigen::Vector2d::Zero());
+  for (std::size_t o = 0; o < problem.observations.size(); ++o) {
+    const BundleObservation& seen = problem.observations[o];
+    if (seen.camera != camera) continue;
+    const Eigen::Vector3d& p_map = problem.points[at(seen.point)].p_map;
+    const Eigen::Isometry3d& T = problem.poses[at(seen.pose)].T_map_vehicle;
+    const Eigen::Isometry3d T_late = T * se3_exp(-errors[9] * motion.twist[at(seen.pose)]);
+    const auto as_calibrated = predicted(mounted, CameraErrors::Zero(), T.inverse() * p_map);
+    const auto with_errors = predicted(mounted, errors, T_late.inverse() * p_map);
+    if (as_calibrated && with_errors) shift.pixels[o] += *with_errors - *as_calibrated;
+  }
+}
+
+}  // namespace
+
+std::vector<CommonError> common_errors_of(const std::vector<CameraDoubt>& doubts,
+                                          const MappingInput& input,
+                                          const BundleStage& stage) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const BundlePose& pose : stage.problem.poses) poses.push_back(pose.T_map_vehicle);
+  const KeyframeMotion motion = vehicle_motion(input, poses);
+  std::vector<CommonError> errors;
+  CommonError together;
+  int cameras = 0;
+  for (const CameraDoubt& doubt : doubts) {
+    for (const CameraErrors& named : doubt.errors) {
+      errors.emplace_back();
+      add_shift(doubt, named, motion, stage, errors.back());
+    }
+    if (doubt.errors.empty()) continue;
+    add_shift(doubt, doubt.errors.front(), motion, stage, together);
+    ++cameras;
+  }
+  if (cameras > 1) errors.push_back(std::move(together));
+  return errors;
+}
+
+}  // namespace roadbook
