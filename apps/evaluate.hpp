@@ -41,6 +41,7 @@ Experiment labels_experiment();
 Experiment laps_experiment();
 Experiment rows_experiment();
 Experiment robustness_experiment();
+Experiment covariance_experiment();
 
 /// Returns all experiments. To add one, declare its function above and list it in
 /// apps/verbs/evaluate_verb.cpp.

@@ -31,8 +31,9 @@ ExitStatus run_evaluate(const EvaluateCommand& command, Console& console) {
 }  // namespace
 
 std::vector<Experiment> all_experiments() {
-  return {spm_experiment(),  speeds_experiment(), people_experiment(),    labels_experiment(),
-          laps_experiment(), rows_experiment(),   diagnosis_experiment(), robustness_experiment()};
+  return {spm_experiment(),       speeds_experiment(),     people_experiment(),
+          labels_experiment(),    laps_experiment(),       rows_experiment(),
+          diagnosis_experiment(), robustness_experiment(), covariance_experiment()};
 }
 
 Verb evaluate_verb() {
@@ -50,7 +51,7 @@ Verb evaluate_verb() {
                         "recording (laps) or annotated pictures (labels)");
             options.add("--only", &command->only,
                         "beginning of the names to run: effects, several with commas (diagnosis), "
-                        "drives (rows), or faults (robustness)");
+                        "drives (rows), faults (robustness), or kinds of drives (covariance)");
             options.add("--seed", &command->seed, "seed of all random numbers");
             options
                 .add("--repeats", &command->repeats,
