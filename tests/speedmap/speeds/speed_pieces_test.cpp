@@ -48,6 +48,21 @@ double travel_time_s(const std::vector<SpeedPiece>& pieces) {
   return time;
 }
 
+// A profile need not exist outside the way.
+TEST(SpeedPieces, AskForSpeedsOfTheWayAlone) {
+  for (const double length : {0.3, 7.0, 123.4}) {
+    SpeedPieceOptions options;
+    options.at_least = 2;
+    const LeastSpeed least = [&](double from, double to) {
+      EXPECT_GE(from, 2.0);
+      EXPECT_LT(from, to);
+      EXPECT_LE(to, 2.0 + length + 1e-9);
+      return 4.0 + std::sin(from);
+    };
+    EXPECT_GE(speed_pieces(least, 2.0, 2.0 + length, options).size(), 2U);
+  }
+}
+
 TEST(SpeedPieces, CoverTheWayWithoutGapsAndAreNowhereFasterThanTheProfile) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
