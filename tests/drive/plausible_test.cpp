@@ -170,7 +170,21 @@ TEST(Plausible, PosesInMillimetresAreSaid) {
   write_text(d / "state_groundtruth_estimate0/data.csv", poses);
   ROADBOOK_EXPECT_TEXT(all_lines(check_drive(d)),
                        "state_groundtruth_estimate0/data.csv:3: position: got a way of 80 m in "
-                       "0.08 s, and the like in 24 of 24 rows, want less than 100 m/s");
+                       "0.08 s, and the like in 24 of 24 rows, want less than 100 m/s (metres?)");
+}
+
+// The unit is doubted only where most rows are too far apart.
+TEST(Plausible, JumpsOfTheReferenceAreNoQuestionOfUnits) {
+  const TemporaryFolder f;
+  const auto d = write_small_drive(f.path() / "d");
+  std::string poses = "#t,x,y,z,w,x,y,z\n";
+  for (int i = 0; i < kFrames; ++i)  // jumps by 80 m before rows 6, 12 and 18
+    poses += std::to_string(kStart + i * kFrame) + "," + std::to_string(80 * std::min(3, i / 6)) +
+             ",0,0,1,0,0,0\n";
+  write_text(d / "state_groundtruth_estimate0/data.csv", poses);
+  const std::string lines = all_lines(check_drive(d));
+  ROADBOOK_EXPECT_TEXT(lines, "and the like in 3 of 24 rows, want less than 100 m/s");
+  EXPECT_EQ(lines.find("metres?"), std::string::npos) << lines;
 }
 
 std::string check_of_imu(double gravity, double rate) {
@@ -232,6 +246,10 @@ TEST(Plausible, ACalibrationOfImagesOfAnotherSizeIsSaid) {
                        "intrinsics: got focal lengths (4000, 4000) for images of 64x48");
   ROADBOOK_EXPECT_TEXT(check_of_camera("pinhole", "[0.7, 0.7, 31.5, 23.5]"), "focal lengths");
   ROADBOOK_EXPECT_TEXT(check_of_camera("pinhole", "[40, 100, 31.5, 23.5]"), "focal lengths");
+  // A fisheye's smaller focal length counts: at least 0.2 times the shorter side.
+  ROADBOOK_EXPECT_TEXT(check_of_camera("ds", "[0, 0.5, 9, 10, 31.5, 23.5]"),
+                       "focal lengths (9, 10)");
+  EXPECT_EQ(check_of_camera("ds", "[0, 0.5, 10, 9.7, 31.5, 23.5]"), "");
   ROADBOOK_EXPECT_TEXT(
       check_of_camera("pinhole", "[40, 40, 31.5, 23.5]", 64, 48, "[64, 48]", "1500"),
       "T_BS: got a camera 1500 m from the vehicle (millimetres?)");

@@ -106,6 +106,12 @@ TEST(ParkingAccess, ASpaceBehindAOneWayLaneIsNamedWithTheReason) {
   EXPECT_EQ(access[0].reason, "way in: no chain of lanes leads there");
   EXPECT_EQ(access[1].reason, "lane 999, 4.00 m away, lies beside or behind it");
   EXPECT_EQ(access[2].reason, "no lane within 10.00 m");
+  // From a place 8 m before it on its own lane there is a way in, and no way back.
+  const auto before = nearest_place(network, {302.0, 0.0, 0.0}, 5.0);
+  ASSERT_TRUE(before);
+  const auto ahead = space_access(Router(network), links, *before);
+  EXPECT_NEAR(ahead[0].way_in_m, 8.0, 1e-6);
+  EXPECT_EQ(ahead[0].reason, "way out: no chain of lanes leads there");
 }
 
 // The lanes of the scenario are the truth: straights and arcs of the turning radius.

@@ -27,6 +27,11 @@ TEST_F(LabelServerTest, SeveralLabelsAreStoredTogetherOrNotAtAll) {
   body["labels"] = Json::array();
   body["request"] = "q";
   EXPECT_EQ(send().status, 422);
+  body["labels"] = Json(1001, Json::parse(space(1.25)));  // 1000 are stored at once, at most
+  EXPECT_EQ(send().status, 422);
+  body["labels"] = Json::parse(space(1.25));
+  EXPECT_EQ(send().status, 422);
+  EXPECT_EQ(store_->labels().size(), 3U);
 }
 
 // Two pages of one user: the name of a request shows each page which step it did last.

@@ -48,6 +48,13 @@ TEST(SvgPlot, AMetreIsAsLongUpwardsAsSideways) {
   }
 }
 
+TEST(SvgPlot, ALineWithoutPointsIsNotDrawn) {
+  PlanPlot plot({{0.0, 0.0}, {1.0, 1.0}});
+  plot.polyline({}, "nothing");
+  plot.segments({}, "nothing");
+  EXPECT_EQ(plot.svg("t").find("nothing"), std::string::npos);
+}
+
 TEST(SvgPlot, ForeignTextCannotLeaveItsPlace) {
   EXPECT_EQ(escaped("<b a=\"x\">&"), "&lt;b a=&quot;x&quot;&gt;&amp;");
   PlanPlot plot({{0.0, 0.0}, {1.0, 1.0}});

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numeric>
+
 #include "base/random.hpp"
 #include "diagnosis/views/view_problem.hpp"
+#include "diagnosis/views/view_saturation.hpp"
 #include "mapping/store/map_file.hpp"
 #include "tests/diagnosis/hidden_views/view_injector.hpp"
 #include "tests/mapping/store/small_map.hpp"
@@ -183,6 +187,27 @@ TEST(ViewSystem, ProjectingTwiceIsProjectingOnce) {
   const Eigen::MatrixXd off =
       scale.cwiseInverse().asDiagonal() * (once - twice) * scale.cwiseInverse().asDiagonal();
   EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-6);
+}
+
+// Of n rows, a fit of p free values leaves n - p. The effects are free within their priors, so they
+// take between none and all of their number. Random signs give each trace with a variance of at
+// most twice the sum of r (1 - r) over rows of redundancy r (Hutchinson), over the number of draws.
+TEST(ViewSystem, RedundanciesSumToTheRowsLessTheFreeValues) {
+  const Case c;
+  ViewSystem system(c.fit.data, c.basis);
+  ViewPoint point = c.fit.point;
+  ASSERT_TRUE(system.linearise(point, c.fit.noise));
+  const std::vector<ViewCause> causes = view_causes(c.fit.data, c.basis);
+  const Saturated left = saturate(system, causes, c.basis, c.fit.data, {}, point);
+  const double sum = std::accumulate(left.redundancy.begin(), left.redundancy.end(), 0.0);
+  double free = 3.0 * static_cast<double>(point.state.points.size());
+  for (const BundlePose& pose : c.fit.data.bundle.poses) free += pose.fixed ? 0.0 : 6.0;
+  const auto rows = static_cast<double>(system.row_count());
+  const double share = free / rows;
+  const double sigma = std::sqrt(2.0 * rows * share * (1.0 - share) / 4.0);
+  EXPECT_LT(sum, rows - free + 4.0 * sigma);
+  EXPECT_GT(sum, rows - free - static_cast<double>(causes.size()) - 4.0 * sigma);
+  EXPECT_LT(4.0 * sigma, 0.1 * (rows - free)) << "the test tells little";
 }
 
 // The columns of the search equal changes of the prediction.

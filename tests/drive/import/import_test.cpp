@@ -8,6 +8,7 @@
 
 #include "base/se3.hpp"
 #include "drive/import/import_support.hpp"
+#include "drive/import/npy.hpp"
 #include "tests/drive/drive_fixture.hpp"
 #include "tests/support/real_data.hpp"
 
@@ -165,6 +166,32 @@ TEST(Import, Kitti360PlacesTheSideFisheyes) {
       Eigen::Vector3d(10, 20, 30 - 0.93), 1e-12));
 }
 
+TEST(Import, Kitti360ReadsTheSizeAndLensOfThePerspectiveCameras) {
+  const TemporaryFolder f;
+  const fs::path s = f.path() / "data_2d_raw" / "seq";
+  write_image(s / "image_00/data_rect/0000000000.png", 5);
+  write_text(s / "image_00/timestamps.txt", "2013-05-28 08:46:02.904939008\n");
+  write_text(f.path() / "calibration/calib_cam_to_pose.txt",
+             "image_00: 0 0 1 1.6 1 0 0 0.3 0 1 0 -0.9\n");
+  const auto import_with = [&](const std::string& size) {
+    write_text(f.path() / "calibration/perspective.txt",
+               "calib_time: 25-May-2018\nS_rect_00: " + size +
+                   "\nP_rect_00: 13.3 0 9.5 0 0 13.4 4.5 0 0 0 1 0\n");
+    ImportOptions options;
+    options.overwrite = true;
+    import_drive("kitti360", s, f.path() / "out", options);
+  };
+  import_with("20 10");
+  const Camera camera = Drive::open(f.path() / "out").rig().cameras[0].camera;
+  EXPECT_EQ(camera.model, CameraModel::kPinholeRadtan);
+  EXPECT_EQ(camera.width, 20);
+  EXPECT_EQ(camera.height, 10);
+  const std::array wanted{13.3, 13.4, 9.5, 4.5};
+  for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_EQ(camera.parameters[i], wanted[i]);
+  EXPECT_THROW(import_with("0 10"), BadInput);
+  EXPECT_THROW(import_with("20 200000"), BadInput);
+}
+
 void write_npy(const fs::path& file, const std::string& shape, const std::vector<double>& values) {
   const std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': " + shape + ", }\n";
   std::string bytes = "\x93NUMPY";
@@ -191,6 +218,18 @@ TEST(Import, Comma2k19ReadsNumpySignals) {
   EXPECT_NEAR(rows[2].right_angle_rad * drive.wheel_model()->radius_right_m, 2.0, 1e-12);
   EXPECT_NEAR(*rows[1].steering_rad * drive.wheel_model()->steering_ratio,
               1.5 * std::numbers::pi / 180, 1e-12);
+}
+
+TEST(Import, AShapeThatIsNoNumberIsNamed) {
+  const TemporaryFolder f;
+  write_npy(f.path() / "t.npy", "(three,)", {1.0, 2.0, 3.0});
+  try {
+    (void)read_npy(f.path() / "t.npy");
+    FAIL();
+  } catch (const BadInput& bad) {
+    EXPECT_NE(std::string(bad.what()).find("shape: got three, want"), std::string::npos)
+        << bad.what();
+  }
 }
 
 TEST(Import, TheRealComma2k19MinuteImports) {

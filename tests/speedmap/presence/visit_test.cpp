@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "base/error.hpp"
 #include "speedmap/presence/map_ages.hpp"
@@ -192,6 +193,17 @@ TEST(Ages, EachItemIsStaleAfterItsOwnHalfLife) {
   EXPECT_FALSE(layers.find("pedestrian 7")->stale(6 * kSecond));
   EXPECT_EQ(layers.of(AgeLayer::kDynamic).size(), 1U);
   EXPECT_THROW(layers.put({"x", 0, -1.0}), InvalidOption);
+}
+
+TEST(Ages, TheLayersOfHalfLivesAreThoseOfAMinuteAnHourAndAWeek) {
+  const auto layer = [](double half_life_s) { return AgedItem{"x", 0, half_life_s}.layer(); };
+  for (const auto& [bound_s, within, beyond] :
+       {std::tuple{60.0, AgeLayer::kDynamic, AgeLayer::kSemiDynamic},
+        {3600.0, AgeLayer::kSemiDynamic, AgeLayer::kSemiStatic},
+        {604'800.0, AgeLayer::kSemiStatic, AgeLayer::kStatic}}) {
+    EXPECT_EQ(layer(bound_s), within) << bound_s;
+    EXPECT_EQ(layer(bound_s + 1.0), beyond) << bound_s;
+  }
 }
 
 // A look states its reach. Beyond the reach it gives no evidence, for any range in the options.
