@@ -187,7 +187,7 @@ std::vector<DriveFault> camera_faults() {
   return {one_camera("focal length 2 % wrong", {"focal length"}, scale_focal),
           one_camera("turned 2 degrees", {"rotation"}, turn),
           swapped(),
-          one_camera("3.5 km from the car", {"position"}, move_away),
+          one_camera("3.5 km from the car", {"from the vehicle"}, move_away),
           all_cameras("T_BS inverted", invert),
           all_cameras("intrinsics of twice the size", double_intrinsics),
           one_camera("frozen image", {"repeat"}, freeze),

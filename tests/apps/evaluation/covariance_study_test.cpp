@@ -71,7 +71,9 @@ TEST(CovarianceStudy, AMapThatStatesItsErrorsHas95PercentInside) {
   EXPECT_NEAR(narrow.six.mean_square(), 4.0, 12.0 * std::sqrt(2.0 / n));
 }
 
-// The short version of `roadbook evaluate covariance`: a drive of 19 m in small images.
+// The short version of `roadbook evaluate covariance`: a drive of 19 m in small images. The errors
+// of one drive hang together, so that their mean square is one draw: at most the 95 % bound of chi
+// square with one degree of freedom. Regions of any size would hold everything.
 TEST(CovarianceStudy, ASimulatedDriveIsCovered) {
   const CoverageKind kind{"no loops 160x120", 0.25, 10.0, {}, ""};
   const CoverageTally tally = coverage_of_drive(kind, 2, 0);
@@ -81,10 +83,10 @@ TEST(CovarianceStudy, ASimulatedDriveIsCovered) {
   EXPECT_EQ(c.unknown, 0U);
   ASSERT_GT(c.position.count, 50U);
   EXPECT_GT(c.landmarks.count, 0U);  // few: small images show outlines nearly everywhere
-  for (const RegionShare* region : {&c.position, &c.position_3d, &c.heading})
-    EXPECT_GE(region->share(), 0.9);
-  // Regions of any size would hold everything.
-  EXPECT_GT(c.position.mean_square(), 0.05);
+  for (const RegionShare* region : {&c.position, &c.position_3d, &c.heading}) {
+    EXPECT_LT(region->mean_square(), 3.84);
+    EXPECT_GT(region->mean_square(), 0.05);
+  }
 }
 
 }  // namespace
