@@ -111,7 +111,7 @@ TEST(ParkingAccess, ASpaceBehindAOneWayLaneIsNamedWithTheReason) {
   ASSERT_TRUE(before);
   const auto ahead = space_access(Router(network), links, *before);
   EXPECT_NEAR(ahead[0].way_in_m, 8.0, 1e-6);
-  EXPECT_EQ(ahead[0].reason, "way out: no chain of lanes leads there");
+  EXPECT_EQ(ahead[0].reason, "way out: lanes lead there only against the way they were driven");
 }
 
 // The lanes of the scenario are the truth: straights and arcs of the turning radius.

@@ -136,7 +136,7 @@ TEST(StillParts, RoadSeenThroughAFrameOfTheCarIsNotTheCar) {
   EXPECT_EQ(cv::countNonZero(found(middle)), 0);
 }
 
-// 2,000 images, of which the last 100 show the car moving.
+// 2,000 images. The last 100 show the car moving.
 TEST(StillParts, FindsTheBonnetInADriveWithALongStop) {
   const std::vector<cv::Mat> moving = images_of({});
   constexpr std::size_t kCount = 2000;

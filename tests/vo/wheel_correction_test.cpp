@@ -72,7 +72,7 @@ TEST(WheelCorrection, GuessesNoRadiusWithoutGround) {
   expect_found(mistake, found(mistake, std::nullopt));
 }
 
-// A wheel that stands for a part of the drive is no matter of wiring.
+// A wheel that does not turn in a part of the drive is not a mistake of wiring.
 TEST(WheelCorrection, KnowsNoneForWheelsThatStand) {
   for (const double seconds : {2.0, 13.0, 25.0}) {
     WheelModel model;

@@ -37,8 +37,8 @@ TEST(CompareWheels, UsualErrorsAreNotDoubted) {
   EXPECT_TRUE(compared([](auto&, WheelModel& m) { m.radius_left_m *= 1.005; }).doubts.empty());
 }
 
-// One wheel or both stand for half a second and more: the time is found within 0.4 s at both ends,
-// and the way that is missing.
+// One wheel or both do not turn for half a second and more: the time is found within 0.4 s at both
+// ends, and the way that is missing.
 TEST(CompareWheels, AWheelThatStandsIsFoundWhenItStands) {
   for (const double seconds : {0.5, 2.0, 5.0})
     for (const int wheels : {1, 2, 3}) {

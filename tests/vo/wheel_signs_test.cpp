@@ -37,7 +37,7 @@ TEST(WheelSigns, SoundWheelsShowNone) {
   EXPECT_FALSE(find_wheel_signs(odometry_with(wheels), wheels, kHeight_m).any());
 }
 
-// Corners that agree with no motion near the wheels' are a sign; an image without corners is none.
+// Corners that agree with no motion near the wheels' are a sign; an image without corners is not.
 TEST(WheelSigns, CornersThatDoNotAgreeShowTheTime) {
   const WheelModel model;
   const WheelOdometry wheels(model, readings_of(model));
@@ -112,8 +112,8 @@ TEST(JudgeSpans, WheelsThatStandAreDoubtedInTheirTimeAlone) {
   }
 }
 
-// Cameras alone at the start know lengths up to a factor: a way that is a fifth longer is none of
-// the wheels' business, a way that is missing is.
+// Cameras alone at the start know lengths up to a factor: a way that is a fifth longer
+// says nothing about the wheels, a way that is missing does.
 TEST(JudgeSpans, WithoutScaleOnlyGrossWaysAreDoubted) {
   const WheelModel model;
   const std::vector<TimeSpan> span{{5 * kSecond, 8 * kSecond}};
