@@ -15,6 +15,7 @@ LoopedMap map_with_loops(MappingInput input, const MapOptions& options, const Pr
   map.loops = find_loops(map.input, loop_options, progress);
   map.relaxed = relax_poses(map.input, map.loops, options, progress);
   map.adjusted = adjust(map.input, map.loops, map.relaxed, options, progress);
+  add_covariances(map.input, map.relaxed, {}, options, map.adjusted);
   return map;
 }
 
