@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "base/random.hpp"
 
 namespace roadbook {
@@ -16,6 +17,9 @@ LoopedMap map_with_loops(MappingInput input, const MapOptions& options, const Pr
   map.relaxed = relax_poses(map.input, map.loops, options, progress);
   map.adjusted = adjust(map.input, map.loops, map.relaxed, options, progress);
   add_covariances(map.input, map.relaxed, {}, options, map.adjusted);
+  if (options.covariances && !map.adjusted.covariance.usable)
+    throw Refused("error: covariances: got " + map.adjusted.covariance.message +
+                  ", want those of all keyframes");
   return map;
 }
 
