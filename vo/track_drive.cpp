@@ -81,7 +81,11 @@ class WheelTrial {
     VoResult sight = run_odometry(drive_, masks_, options_, nullptr, progress_);
     const WheelOdometry wheels = possible_wheels(model, drive_.wheel_readings());
     const double known = sight.keyframes.size() < 2 ? 0.0 : share_known_by(sight, drive_, wheels);
-    if (known < kAskedShare) return run_odometry(drive_, masks_, options_, &wheels, progress_);
+    if (known < kAskedShare) {
+      VoResult result = run_odometry(drive_, masks_, options_, &wheels, progress_);
+      result.doubts.push_back(describe_unjudged(known));
+      return result;
+    }
     const auto ground = ground_factor(sight, height_m_);
     const WheelComparison comparison = compare_wheels(sight, wheels, ground);
     const auto correction = find_wheel_correction(sight, model, drive_.wheel_readings(), ground);
@@ -101,8 +105,8 @@ class WheelTrial {
  private:
   [[nodiscard]] std::int64_t origin_ns() const { return drive_.frame_stamp_ns(0); }
 
-  // Odometry with the wheels but for the times in which it shows that they are wrong. Empty if they
-  // show a wrong scale, or are wrong in so much of the drive that the rest says little.
+  // Odometry that uses the wheels except in the times in which it shows that they are wrong. Empty
+  // if the wheels have a wrong scale, or are wrong in most of the drive.
   [[nodiscard]] std::optional<VoResult> with_sound_times(
       const WheelModel& model, const std::vector<WheelReading>& readings) const {
     constexpr int kRounds = 4;

@@ -46,7 +46,7 @@ struct FaultTally {
   }
 };
 
-/// A place that looks alike, by the name of its study.
+/// A place with parts that look the same, and the name of its study.
 struct AlikeStudy {
   std::string name;
   std::string scenario;
@@ -157,8 +157,8 @@ std::string judged_text(const AlikeResult& result) {
          count_text(result.kept) + "; poses bent by " + fixed(result.largest_bend_m, 3) + " m";
 }
 
-/// Maps one drive through a place that looks alike, offers it pairs of alike places, and removes
-/// loops.
+/// Maps one drive through such a place. Then offers the map pairs of different places that look the
+/// same, and removes single loops.
 ordered_json run_alike(const AlikeStudy& study,
                        std::uint64_t seed,
                        const EvaluateCommand& command,
@@ -244,7 +244,7 @@ void run_robustness(Console& console, const EvaluateCommand& command) {
 
 Experiment robustness_experiment() {
   return {"robustness",
-          "what map makes of damaged recordings, wrong calibrations and places that look alike "
+          "what map makes of damaged recordings, wrong calibrations and places that look the same "
           "(--only: beginnings of names of faults)",
           run_robustness};
 }

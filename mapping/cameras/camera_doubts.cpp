@@ -54,9 +54,11 @@ double least_sigmas(CameraParameter parameter, const CameraDoubtOptions& options
       return options.min_sigmas_weak;  // they differ little from turns and poses
     case CameraParameter::kDelay:
       return options.min_sigmas_delay;
-    default:
+    case CameraParameter::kRotation:
+    case CameraParameter::kFocal:
       return options.min_sigmas;
   }
+  return options.min_sigmas;
 }
 
 // The fits that matter and are no chance, likeliest first: those that explain nearly as much as the

@@ -16,7 +16,7 @@
 #include <cstdlib>
 #include <string>
 
-// What a fault makes doubtful is no reason to refuse it.
+// A fault may cause warnings of the compiler. They are not a reason to refuse it.
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wfloat-conversion"
 #pragma GCC diagnostic ignored "-Wint-in-bool-context"

@@ -37,7 +37,7 @@ inline std::vector<WheelReading> readings_of(const WheelModel& model) {
   return readings;
 }
 
-// What the cameras alone make of the drive: a keyframe every 0.1 s, right but for noise and scale.
+// Odometry of the cameras alone: a keyframe every 0.1 s, with noise and a wrong scale.
 inline VoResult sight_of(double scale = kSightScale) {
   Random random(11, "sight");
   VoResult sight;

@@ -47,7 +47,7 @@ std::optional<double> track_factor(const WheelComparison& comparison) {
   return *comparison.turn_factor;
 }
 
-// Without ground the scale is taken as right, but for its sign.
+// Without ground only the sign of the scale can be checked.
 bool has_right_scale(const Candidate& c) {
   constexpr double kScale = 0.18;  // as a logarithm
   const WheelComparison& found = c.comparison;

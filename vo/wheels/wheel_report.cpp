@@ -105,4 +105,13 @@ SensorDoubt describe_unknown(const std::vector<TimeSpan>& spans, std::int64_t or
   return result;
 }
 
+SensorDoubt describe_unjudged(double known) {
+  SensorDoubt result;
+  result.got =
+      "a motion by wheels0 that the corners or the ground contradict; the cameras alone know " +
+      fixed(100.0 * known, 0) + " % of the motion, too little to judge";
+  result.want = "wheels0 and cameras that agree; the wheels stay in use";
+  return result;
+}
+
 }  // namespace roadbook

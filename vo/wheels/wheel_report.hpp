@@ -27,4 +27,8 @@ namespace roadbook {
 [[nodiscard]] SensorDoubt describe_unknown(const std::vector<TimeSpan>& spans,
                                            std::int64_t origin_ns);
 
+/// Puts into words that the corners or the ground contradict the wheels, and that the cameras alone
+/// know too little of the motion to judge: the share `known`.
+[[nodiscard]] SensorDoubt describe_unjudged(double known);
+
 }  // namespace roadbook

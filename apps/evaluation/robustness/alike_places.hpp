@@ -45,7 +45,7 @@ struct AlikeResult {
   int candidates = 0;           ///< pairs compared
   LoopCount verified;           ///< enough corners agree on one rig pose
   LoopCount accepted;           ///< and a neighbouring loop and the odometry's heights agree
-  LoopCount kept;               ///< and neither odometry nor the other loops contradict
+  LoopCount kept;               ///< and the pose graph did not reject it
   int forced = 0;               ///< of `candidates`: pairs of equal parts that were offered
   double largest_bend_m = 0.0;  ///< largest distance of a pose from that without wrong loops
 };

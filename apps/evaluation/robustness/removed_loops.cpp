@@ -54,9 +54,13 @@ RemovedLoop remove_loop(const LoopedMap& map,
     const Eigen::Isometry3d by = stayed[k].inverse() * moved[k];
     const Eigen::Vector3d d = by.translation();
     const Eigen::Matrix3d place = covariance.topLeftCorner<3, 3>();
-    removed.position = std::max(removed.position, std::sqrt(d.dot(place.ldlt().solve(d))));
-    removed.heading =
-        std::max(removed.heading, std::abs(so3_log(by.linear()).z()) / std::sqrt(covariance(5, 5)));
+    const double position = std::sqrt(d.dot(place.ldlt().solve(d)));
+    const double heading = std::abs(so3_log(by.linear()).z()) / std::sqrt(covariance(5, 5));
+    if (!std::isfinite(position) || !std::isfinite(heading))  // a maximum would skip NaN
+      throw Refused("error: keyframe " + std::to_string(k) +
+                    ": covariance: got none, or one that is not positive, want a known one");
+    removed.position = std::max(removed.position, position);
+    removed.heading = std::max(removed.heading, heading);
   }
   return removed;
 }

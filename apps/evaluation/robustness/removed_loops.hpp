@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// A map's stages, of which loops are removed one at a time.
+/// The stages of a map from which single loops can be removed.
 struct LoopedMap {
   MappingInput input;
   std::vector<LoopClosure> loops;  ///< as `relax_poses` left them
