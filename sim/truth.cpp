@@ -81,7 +81,10 @@ Json ground_json(const World& world) {
 Json world_json(const World& world) {
   const Scenario& scenario = world.scenario;
   Json json;
+  // Drives with equal scenario, size and seed share the world frame (drive/true_poses.hpp).
   json["scenario"] = scenario.name;
+  json["size"] = scenario.size;
+  json["seed"] = scenario.seed;
   json["visit"] = scenario.visit;
   json["frame"] = "world, z up, metres";
   std::vector<bool> occupied(world.layout.spaces.size(), false);

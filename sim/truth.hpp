@@ -10,9 +10,9 @@
 
 namespace roadbook {
 
-/// Writes `truth/` of a simulated drive: world.json (spaces, crossings, lanes, walls, pillars,
-/// parked cars, shape of the ground), pedestrians.csv, ground_kind.png, effects.json. Nothing but
-/// tests and reports reads it. Throws StorageError.
+/// Writes `truth/` of a simulated drive: world.json (scenario, size and seed of the place; spaces,
+/// crossings, lanes, walls, pillars, parked cars, shape of the ground), pedestrians.csv,
+/// ground_kind.png, effects.json. Nothing but tests and reports reads it. Throws StorageError.
 void write_truth_folder(const std::filesystem::path& drive,
                         const World& world,
                         const Pedestrians& people,

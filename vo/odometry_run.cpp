@@ -1,5 +1,7 @@
 #include "vo/odometry_run.hpp"
 
+#include <time.h>
+
 #include <algorithm>
 #include <cmath>
 #include <future>
@@ -106,24 +108,38 @@ FeatureOptions share_of(FeatureOptions features, std::size_t cameras) {
 
 }  // namespace
 
+double thread_cpu_ms() {
+  timespec used{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return 1e3 * static_cast<double>(used.tv_sec) + 1e-6 * static_cast<double>(used.tv_nsec);
+}
+
 std::vector<FrameFeatures> describe_frames(const Drive& drive,
                                            const std::vector<std::size_t>& frames,
                                            std::size_t begin,
                                            std::size_t count,
                                            const std::vector<cv::Mat>& masks,
-                                           const TrackDriveOptions& options) {
+                                           const TrackDriveOptions& options,
+                                           std::vector<double>* cpu_ms) {
   const std::size_t end = std::min(frames.size(), begin + count);
   const std::size_t cameras = drive.rig().cameras.size();
   const FeatureOptions features = share_of(options.features, cameras);
   std::vector<FrameFeatures> chunk(end > begin ? end - begin : 0, FrameFeatures(cameras));
+  std::vector<double> used_ms(chunk.size() * cameras, 0.0);
   parallel_for(chunk.size() * cameras, options.num_threads, [&](std::size_t job) {
     const std::size_t frame = frames[begin + job / cameras];
     const std::size_t camera = job % cameras;
     if (!drive.has_image(frame, camera)) return;
+    const double start_ms = thread_cpu_ms();
     const cv::Mat half = drive.read_image_half(frame, camera);
     if (!half.empty())
       chunk[job / cameras][camera] = detect_features(half, masks[camera], features);
+    used_ms[job] = thread_cpu_ms() - start_ms;
   });
+  if (cpu_ms != nullptr) {
+    cpu_ms->assign(chunk.size(), 0.0);
+    for (std::size_t job = 0; job < used_ms.size(); ++job) (*cpu_ms)[job / cameras] += used_ms[job];
+  }
   return chunk;
 }
 

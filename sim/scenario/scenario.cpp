@@ -38,6 +38,7 @@ Scenario parse_scenario(const std::string& text,
     throw InvalidOption("visit", std::to_string(options.visit),
                         "0 to " + std::to_string(scenario.laps.size() - 1));
   scenario.visit = options.visit;
+  scenario.size = options.size;
   const auto scaled = [&](int pixels) {
     return std::max(16, static_cast<int>(pixels * options.image_scale / 4.0 + 0.5) * 4);
   };

@@ -167,9 +167,10 @@ struct CameraSpec {
 
 struct Scenario {
   std::string name;
-  std::string file;        ///< file that it was read from
-  std::uint64_t seed = 1;  ///< of the place: its texture and the cars that stand in it
-  int visit = 0;           ///< chosen when loading
+  std::string file;           ///< file that it was read from
+  std::string size = "full";  ///< chosen when loading
+  std::uint64_t seed = 1;     ///< of the place: its texture and the cars that stand in it
+  int visit = 0;              ///< chosen when loading
   GroundSpec ground;
   std::optional<CeilingSpec> ceiling;
   std::optional<BaySpec> bays;  ///< `rows`, `blocks` and `walls` hold their copies too

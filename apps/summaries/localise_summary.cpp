@@ -1,0 +1,95 @@
+#include "apps/summaries/localise_summary.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/summary_json.hpp"
+#include "base/format.hpp"
+#include "base/text.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json lost_json(const std::vector<LostSpan>& spans) {
+  Json all = Json::array();
+  for (const LostSpan& span : spans)
+    all.push_back(
+        {{"begin_ns", span.t_begin_ns}, {"end_ns", span.t_end_ns}, {"frames", span.frames}});
+  return all;
+}
+
+Json truth_json(const LocalisationTruth& truth) {
+  return {{"frames", truth.frames},
+          {"median_m", truth.median_m},
+          {"p95_m", truth.p95_m},
+          {"max_m", truth.max_m},
+          {"along_median_m", truth.along_median_m},
+          {"across_median_m", truth.across_median_m},
+          {"heading_median_rad", truth.heading_median_rad},
+          {"heading_p95_rad", truth.heading_p95_rad},
+          {"recall_0_1_m", truth.recall_0_1_m},
+          {"recall_0_2_m", truth.recall_0_2_m},
+          {"recall_0_5_m", truth.recall_0_5_m},
+          {"nees", number(truth.nees)},
+          {"in_ellipse", number(truth.in_ellipse)}};
+}
+
+std::string percent(double share) { return fixed(100.0 * share, 1) + " %"; }
+
+void say_figures(const Console& console, const LocalisationFigures& f) {
+  std::string line = std::to_string(f.localised) + " of " + std::to_string(f.frames) +
+                     " frames localised, " + std::to_string(f.predicted) +
+                     " by the motion alone, " + std::to_string(f.lost.size()) + " times lost";
+  if (f.inliers_median)
+    line += "; " + fixed(*f.inliers_median, 0) + " landmarks in the median frame";
+  if (f.cpu_ms_median) line += ", " + fixed(*f.cpu_ms_median, 1) + " ms of one core";
+  console.say(line);
+  if (f.truth)
+    console.say("truth: median " + fixed(100.0 * f.truth->median_m, 1) + " cm, 95 % within " +
+                fixed(100.0 * f.truth->p95_m, 1) + " cm, largest " +
+                fixed(100.0 * f.truth->max_m, 1) + " cm; " + percent(f.truth->recall_0_1_m) +
+                " of the frames within 10 cm");
+}
+
+}  // namespace
+
+std::optional<StartPose> start_pose(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const auto refuse = [&] {
+    throw InvalidOption("--start", text, "X,Y,HEADING: three numbers [m, m, rad]");
+  };
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text)) {
+    const auto value = parse_double(part);
+    if (!value || !std::isfinite(*value)) refuse();
+    numbers.push_back(*value);
+  }
+  if (numbers.size() != 3) refuse();
+  return StartPose{numbers[0], numbers[1], numbers[2]};
+}
+
+void print_localisation(const Console& console, const LocaliseResult& result) {
+  const LocalisationFigures& f = result.figures;
+  console.warn(result.warnings);
+  say_figures(console, f);
+  console.result(
+      {{"frames", f.frames},
+       {"localised", f.localised},
+       {"predicted", f.predicted},
+       {"lost", lost_json(f.lost)},
+       {"relocalised", f.relocalised},
+       {"inliers", {{"median", number(f.inliers_median)}, {"p5", number(f.inliers_p5)}}},
+       {"cpu_ms", {{"median", number(f.cpu_ms_median)}, {"p99", number(f.cpu_ms_p99)}}},
+       {"jumps_m", {{"median", number(f.jump_median_m)}, {"p999", number(f.jump_p999_m)}}},
+       {"map_digest", result.map_digest},
+       {"sessions_used", result.sessions_used},
+       {"truth", f.truth ? truth_json(*f.truth) : Json(nullptr)},
+       {"warnings", to_json(result.warnings)}});
+}
+
+}  // namespace roadbook

@@ -1,0 +1,60 @@
+#include <memory>
+
+#include "apps/output_option.hpp"
+#include "apps/summaries/localise_summary.hpp"
+#include "apps/vehicle_option.hpp"
+#include "apps/verb.hpp"
+
+namespace roadbook {
+
+Verb localise_verb() {
+  auto command = std::make_shared<LocaliseRequest>();
+  auto start = std::make_shared<std::string>();
+  auto every = std::make_shared<std::string>("all");
+  auto stay_lost = std::make_shared<bool>(false);
+  auto landmarks = std::make_shared<int>(1500);
+  return {
+      "localise", "finds the poses of a drive in a map, which stays as it is",
+      [=](Options& options) {
+        options.add("DRIVE", &command->drive, "recorded drive").required = true;
+        options.add("--map,-m", &command->map, "map file").required = true;
+        options.add("--output,-o", &command->poses, "TUM trajectory to write").required = true;
+        options.add("--frames", &command->frames, "CSV table to write, with a row for each frame");
+        options.add("--every", every.get(), "frames to localise").choices = {"all", "keyframe"};
+        options.add("--start", start.get(),
+                    "where the drive begins, X,Y,HEADING in the map [m, m, rad]");
+        options.add("--no-relocalise", stay_lost.get(),
+                    "do not search the whole map when the pose is not known");
+        options.add("--predicted", &command->with_predicted,
+                    "write poses by the motion alone to the trajectory too");
+        options.add("--landmarks", landmarks.get(), "most landmarks searched for in a frame")
+            .range = {50, 100000};
+        options.add("--sessions", &command->sessions,
+                    "session of the map whose views count; default: all");
+        options.add("--model", &command->model, "YAML file of known effects, which are corrected");
+        add_vehicle_option(options, &command->vehicle);
+        options
+            .add("--want", &command->want,
+                 "share of frames that must be localised, else exit status 4")
+            .range = {0.0, 1.0};
+        options.add("--seed", &command->options.localiser.relocalise.seed,
+                    "seed of all random numbers");
+      },
+      [=](Console& console, const CommonOptions& common) {
+        refuse_to_replace(command->map, command->poses);
+        if (!command->frames.empty()) refuse_to_replace(command->map, command->frames);
+        command->options.tracking.num_threads = common.threads;
+        command->options.start = start_pose(*start);
+        command->options.localiser.may_relocalise = !*stay_lost;
+        command->options.localiser.fix.near.max_landmarks = static_cast<std::size_t>(*landmarks);
+        command->options.localiser.relocalise.descriptors.seed =
+            command->options.localiser.relocalise.seed;
+        if (*every == "keyframe") command->options.frames = LocalisedFrames::kKeyframes;
+        const LocaliseResult result = localise_in_map(*command, console);
+        print_localisation(console, result);
+        if (result.refusal) throw *result.refusal;
+        return ExitStatus::kDone;
+      }};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,185 @@
+#include "mapping/localisation/landmark_pose.hpp"
+
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/rotation.h>
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "base/index.hpp"
+#include "mapping/optimisation/ceres_solve.hpp"
+#include "sensors/camera_projections.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kNotSeen = 50.0;  // residual of a point that the camera model cannot see [sigma]
+
+// The unknowns are a step (translation [m], rotation vector [rad]) from the initial pose:
+// T_map_vehicle = T_initial * (step).
+using Step = std::array<double, 6>;
+
+Eigen::Isometry3d transform_of(const Step& step) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = so3_exp({step[3], step[4], step[5]});
+  T.translation() = Eigen::Vector3d(step[0], step[1], step[2]);
+  return T;
+}
+
+// d xi / d step, where T_initial * step * exp(xi) moves the pose by a change of the step.
+Matrix6d perturbation_of_step(const Step& step) {
+  const Eigen::Vector3d turn(step[3], step[4], step[5]);
+  Matrix6d J = Matrix6d::Zero();
+  J.topLeftCorner<3, 3>() = so3_exp(turn).transpose();
+  J.bottomRightCorner<3, 3>() = so3_right_jacobian(turn);
+  return J;
+}
+
+struct PixelCost {
+  const MountedCamera& mounted;
+  Eigen::Vector3d p_initial;  // landmark in the vehicle frame of the initial pose
+  Eigen::Vector2d pixel;
+  Eigen::Matrix2d root;  // of the information of the error
+
+  template <typename T>
+  bool operator()(const T* step, T* residual) const {
+    const std::array<T, 3> from{p_initial.x() - step[0], p_initial.y() - step[1],
+                                p_initial.z() - step[2]};
+    const std::array<T, 3> back{-step[3], -step[4], -step[5]};
+    std::array<T, 3> p;
+    ceres::AngleAxisRotatePoint(back.data(), from.data(), p.data());
+    const Eigen::Matrix<T, 3, 1> p_vehicle(p[0], p[1], p[2]);
+    const Eigen::Matrix<T, 3, 1> p_camera =
+        mounted.T_vehicle_camera.linear().transpose().cast<T>() *
+        (p_vehicle - mounted.T_vehicle_camera.translation().cast<T>());
+    std::array<T, Camera::kMaxParameters> q;
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = T(mounted.camera.parameters[i]);
+    Eigen::Matrix<T, 2, 1> predicted;
+    if (!project_with(mounted.camera.model, q.data(), p_camera, &predicted)) {
+      residual[0] = T(kNotSeen);
+      residual[1] = T(0.0);
+      return true;
+    }
+    const Eigen::Matrix<T, 2, 1> e = root.cast<T>() * (pixel.cast<T>() - predicted);
+    residual[0] = e.x();
+    residual[1] = e.y();
+    return true;
+  }
+};
+
+struct PriorCost {
+  Step expected;
+  Matrix6d root;
+
+  template <typename T>
+  bool operator()(const T* step, T* residual) const {
+    Eigen::Matrix<T, 6, 1> off;
+    for (int i = 0; i < 6; ++i) off(i) = step[i] - T(expected[at(i)]);
+    Eigen::Map<Eigen::Matrix<T, 6, 1>> e(residual);
+    e = root.cast<T>() * off;
+    return true;
+  }
+};
+
+// Matrix A with A^T A = the inverse of the covariance of the error, at the initial pose.
+std::optional<Eigen::Matrix2d> information_root(const MountedCamera& mounted,
+                                                const LandmarkPixel& seen,
+                                                const Eigen::Isometry3d& T_camera_map,
+                                                double sigma_px) {
+  Matrix23d J_point;
+  if (!mounted.camera.project(T_camera_map * seen.p_map, &J_point)) return std::nullopt;
+  const Matrix23d J = J_point * T_camera_map.linear();
+  Eigen::Matrix2d S = J * seen.covariance * J.transpose();
+  S.diagonal().array() += sigma_px * sigma_px;
+  const Eigen::Matrix2d information = S.inverse();
+  return Eigen::Matrix2d(information.llt().matrixU());
+}
+
+struct Terms {
+  std::vector<std::unique_ptr<ceres::CostFunction>> costs;
+  std::vector<std::size_t> pixel;  // of each cost
+};
+
+// Errors, inliers and normal equations at the final pose.
+void judge(const Terms& terms,
+           const Step& step,
+           const LandmarkPoseOptions& options,
+           LandmarkPose& pose) {
+  const double gate = options.inlier_sigma * options.inlier_sigma;
+  const double width = options.loss_sigma * options.loss_sigma;
+  const double* parameters = step.data();
+  const Matrix6d step_of_xi = perturbation_of_step(step).inverse();
+  for (std::size_t i = 0; i < terms.costs.size(); ++i) {
+    Eigen::Vector2d e;
+    Eigen::Matrix<double, 2, 6, Eigen::RowMajor> J;
+    double* jacobian = J.data();
+    terms.costs[i]->Evaluate(&parameters, e.data(), &jacobian);
+    const double chi2 = e.squaredNorm();
+    const double weight = 1.0 / (1.0 + chi2 / width);
+    const Eigen::Matrix<double, 2, 6> J_xi = J * step_of_xi;
+    pose.information.noalias() += weight * J_xi.transpose() * J_xi;
+    if (chi2 > gate) continue;
+    pose.inlier[terms.pixel[i]] = 1;
+    pose.chi2 += chi2;
+    ++pose.inliers;
+  }
+}
+
+}  // namespace
+
+std::optional<LandmarkPose> solve_landmark_pose(const Rig& rig,
+                                                std::span<const LandmarkPixel> pixels,
+                                                const Eigen::Isometry3d& initial,
+                                                const std::optional<RigPosePrior>& prior,
+                                                const LandmarkPoseOptions& options) {
+  Step step{};
+  ceres::CauchyLoss loss(options.loss_sigma);
+  auto problem_options = ceres_problem_options();
+  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  problem_options.disable_all_safety_checks = true;  // the number of residuals is large, they small
+  ceres::Problem problem(problem_options);
+  problem.AddParameterBlock(step.data(), 6);
+  Terms terms;
+  const Eigen::Isometry3d T_vehicle_map = initial.inverse();
+  std::vector<Eigen::Isometry3d> T_camera_map;
+  for (const MountedCamera& mounted : rig.cameras)
+    T_camera_map.push_back(mounted.T_vehicle_camera.inverse() * T_vehicle_map);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const MountedCamera& mounted = rig.cameras[at(pixels[i].camera)];
+    const auto root =
+        information_root(mounted, pixels[i], T_camera_map[at(pixels[i].camera)], options.sigma_px);
+    if (!root) continue;
+    terms.costs.push_back(std::make_unique<ceres::AutoDiffCostFunction<PixelCost, 2, 6>>(
+        new PixelCost{mounted, T_vehicle_map * pixels[i].p_map, pixels[i].pixel, *root}));
+    terms.pixel.push_back(i);
+    problem.AddResidualBlock(terms.costs.back().get(), &loss, step.data());
+  }
+  if (terms.costs.size() < 3) return std::nullopt;
+  std::unique_ptr<ceres::CostFunction> prior_cost;
+  if (prior) {
+    const Eigen::Isometry3d T_initial_prior = T_vehicle_map * prior->T_world_vehicle;
+    const Eigen::Vector3d turn = so3_log(T_initial_prior.linear());
+    const Eigen::Vector3d& way = T_initial_prior.translation();
+    const Step expected{way.x(), way.y(), way.z(), turn.x(), turn.y(), turn.z()};
+    prior_cost = std::make_unique<ceres::AutoDiffCostFunction<PriorCost, 6, 6>>(new PriorCost{
+        expected, prior->information.llt().matrixU() * perturbation_of_step(expected)});
+    problem.AddResidualBlock(prior_cost.get(), nullptr, step.data());
+  }
+  const auto outcome = solve_by_ceres(
+      ceres_solver_options(ceres::DENSE_NORMAL_CHOLESKY, options.max_iterations, 1e8),
+      options.relative_tolerance, {}, problem);
+  static_cast<void>(outcome);  // a pose that has not converged is judged by its inliers
+  LandmarkPose pose;
+  pose.T_map_vehicle = initial * transform_of(step);
+  pose.T_map_vehicle.linear() = nearest_rotation(pose.T_map_vehicle.linear());
+  pose.inlier.assign(pixels.size(), 0);
+  if (!pose.T_map_vehicle.matrix().allFinite()) return std::nullopt;
+  judge(terms, step, options, pose);
+  return pose;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/se3.hpp"
+#include "sensors/rig.hpp"
+#include "vo/rig_pose.hpp"
+
+namespace roadbook {
+
+/// A landmark that an image shows.
+struct LandmarkPixel {
+  int camera = 0;         ///< index in the rig
+  Eigen::Vector2d pixel;  ///< in the image size of the rig's cameras
+  Eigen::Vector3d p_map;
+  Eigen::Matrix3d covariance;  ///< of `p_map` [m^2]
+};
+
+struct LandmarkPoseOptions {
+  double sigma_px = 0.6;      ///< of a corner
+  double loss_sigma = 1.5;    ///< width of the Cauchy loss, in standard deviations
+  double inlier_sigma = 3.5;  ///< largest error of an inlier, in standard deviations
+  int max_iterations = 20;
+  double relative_tolerance = 1e-6;  ///< decrease of the cost by the last step
+};
+
+struct LandmarkPose {
+  Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
+  /// Of the right perturbation, by the landmarks alone, if the errors of all were independent.
+  Matrix6d information = Matrix6d::Zero();
+  std::vector<std::uint8_t> inlier;  ///< by landmark
+  int inliers = 0;
+  double chi2 = 0.0;  ///< sum of the squared normalised errors of inliers, 2 * inliers expected
+};
+
+/// Minimises the reprojection errors of landmarks by Ceres [metric-semantic maps, section IV-C].
+/// An error is normalised by the covariance of the corner and of the landmark, seen from `initial`;
+/// Cauchy loss. `prior`: what else is known of the pose; empty: nothing. Derivatives: Ceres' dual
+/// numbers through `project_with`. One thread. Empty if the pose is not determined.
+[[nodiscard]] std::optional<LandmarkPose> solve_landmark_pose(
+    const Rig& rig,
+    std::span<const LandmarkPixel> pixels,
+    const Eigen::Isometry3d& initial,
+    const std::optional<RigPosePrior>& prior,
+    const LandmarkPoseOptions& options = {});
+
+}  // namespace roadbook

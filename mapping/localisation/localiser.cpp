@@ -1,0 +1,306 @@
+#include "mapping/localisation/localiser.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/index.hpp"
+#include "vo/planar_motion.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kStartReachM = 20.0;  // of the map around a given start
+
+double seconds(std::int64_t from_ns, std::int64_t to_ns) {
+  return static_cast<double>(to_ns - from_ns) * 1e-9;
+}
+
+// What two sources that may share errors know together: along each common axis what the better one
+// knows.
+Matrix6d better_of(const Matrix6d& a, const Matrix6d& b) {
+  // a = L L^T; L^-1 b L^-T = V D V^T. In the coordinates V^T L^-1 x, a is 1 and b is D.
+  const Eigen::LLT<Matrix6d> llt(a);
+  if (llt.info() != Eigen::Success) return b;
+  const Matrix6d L = llt.matrixL();
+  const Matrix6d inner = L.triangularView<Eigen::Lower>().solve(
+      L.triangularView<Eigen::Lower>().solve(b).transpose().eval());
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(0.5 * (inner + inner.transpose()));
+  const Matrix6d axes = L * eigen.eigenvectors();
+  return axes * eigen.eigenvalues().cwiseMin(1.0).asDiagonal() * axes.transpose();
+}
+
+// A vehicle whose pose is known, or supposed.
+struct VehicleTrack {
+  PredictedPose pose;
+  std::int64_t t_ns = 0;
+  // The pose of the last fix, and the velocity from the two last ones (per second).
+  Eigen::Isometry3d T_map_fixed = Eigen::Isometry3d::Identity();
+  std::int64_t fixed_ns = 0;
+  std::optional<Vector6d> velocity;
+  Matrix6d random = Matrix6d::Zero();  // covariance without the wheels' lasting errors
+  double since_fix_m = 0.0;
+  double since_fix_rad = 0.0;
+  int jumps = 0;  // frames in a row whose fix contradicts the prediction
+  // Of a pose without prediction, until it is confirmed.
+  bool tentative = false;
+  double tried_m = 0.0;
+  int tried = 0;
+  int fixed = 0;
+};
+
+}  // namespace
+
+std::string_view name_of(LocalisationStatus status) {
+  switch (status) {
+    case LocalisationStatus::kLocalised:
+      return "localised";
+    case LocalisationStatus::kRelocalised:
+      return "relocalised";
+    case LocalisationStatus::kPredicted:
+      return "predicted";
+    case LocalisationStatus::kLost:
+      return "lost";
+  }
+  return "lost";
+}
+
+void LocaliserOptions::check() const {
+  fix.check();
+  relocalise.check();
+  if (!(lost_m > 0.0)) throw InvalidOption("lost_m", std::to_string(lost_m), "> 0");
+  if (!(confirm_m >= 0.0)) throw InvalidOption("confirm_m", std::to_string(confirm_m), ">= 0");
+}
+
+struct Localiser::State {
+  const LandmarkIndex& index;
+  Rig rig;
+  LocaliserOptions options;
+  std::optional<Relocaliser> relocaliser;  // made when it is needed for the first time
+  std::optional<Eigen::Vector3d> start;    // where the vehicle is said to stand
+  double start_heading_rad = 0.0;
+  std::optional<VehicleTrack> track;
+  std::optional<std::int64_t> last_try_ns;
+  bool confirmed = false;
+
+  State(const LandmarkIndex& i, Rig r, const LocaliserOptions& o)
+      : index(i), rig(std::move(r)), options(o) {
+    options.check();
+  }
+
+  const Relocaliser& places() {
+    if (!relocaliser) relocaliser.emplace(index, options.relocalise);
+    return *relocaliser;
+  }
+
+  void predict(const LocaliserFrame& frame);
+  [[nodiscard]] bool is_lost() const;
+  bool try_fix(const FrameCorners& corners, LocalisedFrame& result);
+  bool fix_without_motion(const FrameCorners& corners);
+  void take_fix(const Eigen::Isometry3d& T_map_vehicle, const Matrix6d& covariance);
+  void look_for_place(const LocaliserFrame& frame, const FrameCorners& corners);
+  [[nodiscard]] bool agrees_with_start(const Eigen::Isometry3d& T_map_vehicle) const;
+  void judge_tentative(bool has_fix);
+};
+
+// Moves the track to the time of the frame, by the wheels or with its velocity.
+void Localiser::State::predict(const LocaliserFrame& frame) {
+  VehicleTrack& t = *track;
+  const double dt = seconds(t.t_ns, frame.t_ns);
+  Eigen::Isometry3d T_old_new = Eigen::Isometry3d::Identity();
+  Matrix6d noise = Matrix6d::Zero();
+  if (frame.wheels) {
+    T_old_new = planar_transform(*frame.wheels);
+    noise = planar_information(*frame.wheels).inverse();
+  } else {
+    constexpr double kFastest = 15.0;  // [m/s] of a car whose velocity is not known
+    if (t.velocity) T_old_new = se3_exp(*t.velocity * dt);
+    const double place =
+        0.02 + (t.velocity ? 0.5 * options.acceleration_m_s2 * dt * dt : kFastest * dt);
+    const double turn = 0.005 + 0.5 * options.angular_acceleration_rad_s2 * dt * dt;
+    noise.diagonal() << Eigen::Vector3d::Constant(place * place),
+        Eigen::Vector3d::Constant(turn * turn);
+  }
+  const double way = T_old_new.translation().norm();
+  t.pose.T_map_vehicle = t.pose.T_map_vehicle * T_old_new;
+  t.random = compose_covariance(t.random, T_old_new, noise);
+  t.since_fix_m += way;
+  t.since_fix_rad += so3_log(T_old_new.linear()).norm();
+  t.pose.covariance = t.random;
+  if (frame.wheels) {
+    const double sigma_way = options.wheel_error * t.since_fix_m;
+    const double sigma_turn = options.wheel_error * (t.since_fix_rad + 0.05 * t.since_fix_m);
+    t.pose.covariance(0, 0) += sigma_way * sigma_way;
+    t.pose.covariance(1, 1) += std::pow(0.5 * sigma_turn * t.since_fix_m, 2);
+    t.pose.covariance(5, 5) += sigma_turn * sigma_turn;
+  }
+  t.tried_m += way;
+  t.t_ns = frame.t_ns;
+}
+
+bool Localiser::State::is_lost() const {
+  const Matrix6d& P = track->pose.covariance;
+  const double place = std::sqrt(std::max(P(0, 0), P(1, 1)));
+  return place > options.lost_m || std::sqrt(P(5, 5)) > options.lost_rad ||
+         track->since_fix_m > options.lost_after_m || track->jumps >= options.max_jumps;
+}
+
+// Takes the pose that the landmarks give, if there are enough and they do not contradict.
+bool Localiser::State::try_fix(const FrameCorners& corners, LocalisedFrame& result) {
+  VehicleTrack& t = *track;
+  auto fix = fix_frame(rig, corners, index, t.pose, options.fix);
+  if (!fix) return false;
+  result.matched = fix->matched;
+  result.in_view = std::move(fix->in_view);
+  if (!has_enough(*fix, rig, options.fix)) return false;
+  const Vector6d jump = se3_log(t.pose.T_map_vehicle.inverse() * fix->T_map_vehicle);
+  const Matrix6d S = t.pose.covariance + fix->covariance;
+  if (jump.dot(S.ldlt().solve(jump)) > options.max_jump_chi2) {
+    ++t.jumps;
+    return false;
+  }
+  result.jump_m = jump.head<3>().norm();
+  result.views = std::move(fix->views);
+  result.cameras = fix->cameras;
+  result.chi2 = fix->chi2;
+  take_fix(fix->T_map_vehicle, better_of(t.pose.covariance, fix->covariance));
+  return true;
+}
+
+void Localiser::State::take_fix(const Eigen::Isometry3d& T_map_vehicle,
+                                const Matrix6d& covariance) {
+  constexpr double kLongest = 1.0;  // [s] between two fixes that tell a velocity
+  VehicleTrack& t = *track;
+  const double dt = seconds(t.fixed_ns, t.t_ns);
+  if (dt > 0.0 && dt < kLongest) t.velocity = se3_log(t.T_map_fixed.inverse() * T_map_vehicle) / dt;
+  t.T_map_fixed = T_map_vehicle;
+  t.fixed_ns = t.t_ns;
+  t.pose = {T_map_vehicle, covariance};
+  t.random = covariance;
+  t.since_fix_m = t.since_fix_rad = 0.0;
+  t.jumps = 0;
+}
+
+// Without wheels and without a velocity nothing predicts the pose: the place around the last one is
+// searched as if no pose were known.
+bool Localiser::State::fix_without_motion(const FrameCorners& corners) {
+  const auto found =
+      places().find_near(rig, corners, track->T_map_fixed.translation(), options.fix);
+  if (!found) return false;
+  take_fix(found->fix.T_map_vehicle, found->fix.covariance);
+  return true;
+}
+
+bool Localiser::State::agrees_with_start(const Eigen::Isometry3d& T_map_vehicle) const {
+  constexpr double kWithinM = 5.0;
+  constexpr double kWithinRad = 0.52;
+  if (!start) return true;
+  return (T_map_vehicle.translation() - *start).head<2>().norm() < kWithinM &&
+         std::abs(wrap_angle(heading_of(T_map_vehicle) - start_heading_rad)) < kWithinRad;
+}
+
+void Localiser::State::look_for_place(const LocaliserFrame& frame, const FrameCorners& corners) {
+  if (!options.may_relocalise && !start) return;
+  if (last_try_ns && seconds(*last_try_ns, frame.t_ns) < options.retry_s) return;
+  last_try_ns = frame.t_ns;
+  const auto found = start ? places().find_near(rig, corners, *start, options.fix)
+                           : places().find(rig, corners, options.fix);
+  if (!found || found->ambiguous || !agrees_with_start(found->fix.T_map_vehicle)) return;
+  VehicleTrack t;
+  t.pose = {found->fix.T_map_vehicle, found->fix.covariance};
+  t.random = t.pose.covariance;
+  t.T_map_fixed = t.pose.T_map_vehicle;
+  t.t_ns = t.fixed_ns = frame.t_ns;
+  t.tentative = !start;  // a start that somebody gave needs no driving to be believed
+  start.reset();
+  track = t;
+}
+
+// A pose without prediction is believed when the car has driven and most frames had a fix.
+void Localiser::State::judge_tentative(bool has_fix) {
+  VehicleTrack& t = *track;
+  if (!t.tentative) return;
+  ++t.tried;
+  t.fixed += has_fix ? 1 : 0;
+  constexpr int kFewest = 5;
+  const bool is_poor = t.tried >= kFewest && t.fixed < options.confirm_share * t.tried;
+  if (is_poor) {
+    track.reset();
+    return;
+  }
+  if (t.tried < kFewest || t.tried_m < options.confirm_m) return;
+  t.tentative = false;
+  confirmed = true;
+}
+
+Localiser::Localiser(const LandmarkIndex& index, Rig half_rig, const LocaliserOptions& options)
+    : state_(std::make_unique<State>(index, std::move(half_rig), options)) {}
+Localiser::~Localiser() = default;
+Localiser::Localiser(Localiser&&) noexcept = default;
+Localiser& Localiser::operator=(Localiser&&) noexcept = default;
+
+void Localiser::start_near(double x_m, double y_m, double heading_rad) {
+  State& s = *state_;
+  int best = -1;
+  double least = kStartReachM;
+  const Map& map = s.index.map();
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    if (s.index.seen_from(static_cast<int>(k)).empty()) continue;
+    const Eigen::Vector3d p = map.T_map_vehicle(static_cast<int>(k)).translation();
+    const double distance = (p.head<2>() - Eigen::Vector2d(x_m, y_m)).norm();
+    if (distance >= least) continue;
+    least = distance;
+    best = static_cast<int>(k);
+  }
+  if (best < 0)
+    throw InvalidOption("start", std::to_string(x_m) + "," + std::to_string(y_m),
+                        "a place within 20 m of the map's poses");
+  s.start = Eigen::Vector3d(x_m, y_m, map.T_map_vehicle(best).translation().z());
+  s.start_heading_rad = heading_rad;
+  s.track.reset();
+}
+
+LocalisedFrame Localiser::add(LocaliserFrame frame) {
+  State& s = *state_;
+  s.confirmed = false;
+  LocalisedFrame result;
+  result.frame = frame.frame;
+  result.t_ns = frame.t_ns;
+  const FrameCorners corners(s.rig, std::move(frame.features));
+  const bool is_blind = s.track && !frame.wheels && !s.track->velocity;
+  if (s.track) s.predict(frame);
+  const bool is_placed = is_blind && s.fix_without_motion(corners);
+  if (s.track && s.is_lost()) s.track.reset();
+  const bool had_track = s.track.has_value();
+  if (!s.track) s.look_for_place(frame, corners);
+  if (!s.track) return result;
+  const bool has_fix = s.try_fix(corners, result);
+  if (!had_track || is_placed || !frame.wheels)
+    result.jump_m = std::numeric_limits<double>::quiet_NaN();
+  s.judge_tentative(has_fix);
+  if (!s.track) {  // the tentative pose was wrong
+    LocalisedFrame lost;
+    lost.frame = result.frame;
+    lost.t_ns = result.t_ns;
+    return lost;
+  }
+  const VehicleTrack& t = *s.track;
+  result.tentative = t.tentative;
+  result.status = t.tentative ? LocalisationStatus::kLost
+                  : has_fix   ? LocalisationStatus::kLocalised
+                              : LocalisationStatus::kPredicted;
+  if (s.confirmed && has_fix) result.status = LocalisationStatus::kRelocalised;
+  result.T_map_vehicle = t.pose.T_map_vehicle;
+  result.covariance = t.pose.covariance;
+  result.keyframe = s.index.nearest_keyframe(t.pose.T_map_vehicle.translation());
+  result.since_fix_m = t.since_fix_m;
+  return result;
+}
+
+bool Localiser::confirmed() const { return state_->confirmed; }
+
+}  // namespace roadbook

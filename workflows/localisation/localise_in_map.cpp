@@ -1,0 +1,145 @@
+#include "workflows/localisation/localise_in_map.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/format.hpp"
+#include "base/whole_file.hpp"
+#include "drive/true_poses.hpp"
+#include "drive/vehicle_yaml.hpp"
+#include "mapping/pieces.hpp"
+#include "mapping/similarity.hpp"
+#include "mapping/store/map_file.hpp"
+#include "mapping/store/map_reading.hpp"
+#include "vo/own_car_mask.hpp"
+#include "workflows/localisation/localisation_files.hpp"
+#include "workflows/session_drives.hpp"
+#include "workflows/settings/effect_model.hpp"
+
+namespace roadbook {
+namespace {
+
+Drive open_corrected(const LocaliseRequest& request) {
+  Drive drive = Drive::open(request.drive);
+  if (!request.model.empty()) drive.correct(read_effect_model(request.model));
+  return drive;
+}
+
+void require_landmarks(const Map& map, const std::filesystem::path& file) {
+  if (map.landmarks.empty())
+    throw BadInput({Severity::kError, file.string(), 0, "landmarks", "none",
+                    "a map with landmarks (roadbook map)"});
+}
+
+// Says what the user may not expect of this drive in this map.
+std::vector<Problem> doubts_about(const Drive& drive, const Map& map, const std::string& digest) {
+  std::vector<Problem> doubts;
+  for (const Session& session : map.sessions)
+    if (session.drive_digest == digest)
+      doubts.push_back({Severity::kWarning, drive.folder().string(), 0, "drive",
+                        "session " + session.name + " of the map itself",
+                        "a drive that the map does not have (the figures are too good)"});
+  const bool has_equal_rig =
+      std::any_of(map.sessions.begin(), map.sessions.end(), [&](const Session& session) {
+        return session.rig.cameras.size() == drive.rig().cameras.size();
+      });
+  if (!has_equal_rig)
+    doubts.push_back({Severity::kWarning, drive.folder().string(), 0, "cameras",
+                      std::to_string(drive.rig().cameras.size()),
+                      std::to_string(map.sessions.front().rig.cameras.size()) +
+                          ", as the map (views from other places match less)"});
+  return doubts;
+}
+
+// Pose of the world of the drive's truth in the map, from the sessions whose truth has the same
+// world; empty without one.
+std::optional<Eigen::Isometry3d> world_in_map(const std::filesystem::path& file,
+                                              const Map& map,
+                                              const Drive& drive) {
+  const auto world = true_world(drive);
+  if (!world) return std::nullopt;
+  std::vector<Eigen::Vector3d> in_map;
+  std::vector<Eigen::Vector3d> in_world;
+  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
+    const auto folder = session_folder(file, map.sessions[s]);
+    if (!std::filesystem::is_directory(folder)) continue;
+    try {
+      const Drive other = Drive::open(folder);
+      if (other.digest() != map.sessions[s].drive_digest || true_world(other) != world) continue;
+      std::vector<std::int64_t> truth_ns;
+      std::vector<std::int64_t> map_ns;
+      std::vector<std::size_t> keyframes;
+      const auto truth = true_poses(other);
+      for (const TimedPose& pose : truth) truth_ns.push_back(pose.t_ns);
+      for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+        if (map.keyframes[k].session != static_cast<int>(s)) continue;
+        map_ns.push_back(map.keyframes[k].t_ns);
+        keyframes.push_back(k);
+      }
+      constexpr std::int64_t kToleranceNs = 5'000'000;
+      for (const auto& [a, b] : associate_stamps(truth_ns, map_ns, kToleranceNs)) {
+        in_world.push_back(truth[a].T_world_vehicle.translation());
+        in_map.push_back(map.T_map_vehicle(static_cast<int>(keyframes[b])).translation());
+      }
+    } catch (const BadInput&) {  // the drive is no longer as it was: no truth from it
+      continue;
+    }
+  }
+  const Similarity fit = align(in_map, in_world, false);
+  if (!fit.unique) return std::nullopt;
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = fit.R;
+  T.translation() = fit.t;
+  return T;
+}
+
+std::optional<Refused> refusal_of(const LocaliseRequest& request,
+                                  const LocalisationFigures& figures) {
+  const double share = figures.frames > 0 ? static_cast<double>(figures.localised) /
+                                                static_cast<double>(figures.frames)
+                                          : 0.0;
+  const std::string line = "error: " + request.map.string() + ": " + request.drive.string() +
+                           ": got " + std::to_string(figures.localised) + " of " +
+                           std::to_string(figures.frames) + " frames localised, want ";
+  if (figures.localised == 0) return Refused(line + "a drive of this place");
+  if (request.want && share < *request.want)
+    return Refused(line + fixed(100.0 * *request.want, 1) + " % of them (--want)");
+  return std::nullopt;
+}
+
+}  // namespace
+
+LocaliseResult localise_in_map(const LocaliseRequest& request, Messages& messages) {
+  LocaliseResult result;
+  const Drive drive = open_corrected(request);
+  if (drive.rig().cameras.empty())
+    throw BadInput(
+        {Severity::kError, drive.folder().string(), 0, "cameras", "none", "at least one camera"});
+  const MapReading reading(request.map);
+  const Map map = load_joined_map(request.map);
+  result.map_digest = load_meta(request.map).digest;
+  reading.require_same_map();
+  require_landmarks(map, request.map);
+  result.warnings = doubts_about(drive, map, drive.digest());
+  const LandmarkIndex index(map, request.sessions);
+  for (const Session& session : map.sessions)
+    if (request.sessions.empty() ||
+        std::count(request.sessions.begin(), request.sessions.end(), session.name) > 0)
+      result.sessions_used.push_back(session.name);
+  std::optional<VehicleMeasures> vehicle;
+  if (!request.vehicle.empty()) vehicle = load_vehicle(request.vehicle);
+  const OwnCar car = find_own_car(drive, vehicle, request.options.tracking.num_threads);
+  result.frames = localise_drive(drive, car.masks, index, request.options, messages.progress());
+  const auto warnings = drive.warnings();
+  result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
+  result.figures = localisation_figures(result.frames);
+  if (const auto T_map_world = world_in_map(request.map, map, drive))
+    result.figures.truth = localisation_truth(result.frames, true_poses(drive), *T_map_world);
+  if (!request.poses.empty())
+    write_whole_file(request.poses, localised_tum(result.frames, request.with_predicted));
+  if (!request.frames.empty()) write_whole_file(request.frames, localised_csv(result.frames, map));
+  result.refusal = refusal_of(request, result.figures);
+  return result;
+}
+
+}  // namespace roadbook
