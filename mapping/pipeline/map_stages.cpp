@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "mapping/landmark_descriptor.hpp"
 #include "mapping/optimisation/graph_relaxation.hpp"
 #include "mapping/travelled.hpp"
 
@@ -243,6 +244,20 @@ void add_covariances(const MappingInput& input,
                            options.bundle.feature_sigma_px, options.triangulation);
 }
 
+namespace {
+
+// The descriptor that is most like those of all views.
+Descriptor descriptor_of(const std::vector<VoKeyframe>& keyframes, const JoinedTrack& track) {
+  std::vector<Descriptor> seen;
+  for (const KeyPointId& view : track.views)
+    seen.push_back(keyframes[static_cast<std::size_t>(view.keyframe)]
+                       .features[static_cast<std::size_t>(view.camera)]
+                       .descriptors[static_cast<std::size_t>(view.feature)]);
+  return seen[middle_descriptor(seen)];
+}
+
+}  // namespace
+
 Map map_of_stages(const MappingInput& input,
                   const std::vector<LoopClosure>& loops,
                   const Adjusted& adjusted,
@@ -262,9 +277,7 @@ Map map_of_stages(const MappingInput& input,
     landmark.map_frame = first.keyframe;
     landmark.p_frame =
         adjusted.T_map_vehicle[static_cast<std::size_t>(first.keyframe)].inverse() * *track.p_map;
-    landmark.descriptor = keyframes[static_cast<std::size_t>(first.keyframe)]
-                              .features[static_cast<std::size_t>(first.camera)]
-                              .descriptors[static_cast<std::size_t>(first.feature)];
+    landmark.descriptor = descriptor_of(keyframes, track);
     landmark.ground = on_ground(views[t], level, options.bundle.ground);
     if (!adjusted.landmark_covariance.of_track.empty())
       landmark.covariance = adjusted.landmark_covariance.of_track[t];
