@@ -66,8 +66,8 @@ Matrix6d inverse_of(const Matrix6d& information) {
 void FrameFixOptions::check() const {
   near.check();
   if (min_inliers < 6) throw InvalidOption("min_inliers", std::to_string(min_inliers), ">= 6");
-  if (!(information_discount >= 1.0))
-    throw InvalidOption("information_discount", std::to_string(information_discount), ">= 1");
+  if (!(noise_factor > 0.0))
+    throw InvalidOption("noise_factor", std::to_string(noise_factor), "> 0");
 }
 
 std::optional<FrameFix> fix_frame(const Rig& half_rig,
@@ -90,7 +90,7 @@ std::optional<FrameFix> fix_frame(const Rig& half_rig,
     pixels = pixels_of(found.views, corners, index);
     pose = solve_landmark_pose(half_rig, pixels, from.T_map_vehicle, prior, options.pose);
     if (!pose) return std::nullopt;
-    from = {pose->T_map_vehicle, inverse_of(pose->information / options.information_discount)};
+    from = {pose->T_map_vehicle, inverse_of(pose->information / options.noise_factor)};
   }
   FrameFix fix;
   fix.T_map_vehicle = from.T_map_vehicle;
@@ -98,6 +98,8 @@ std::optional<FrameFix> fix_frame(const Rig& half_rig,
   fix.in_view = std::move(found.in_view);
   fix.matched = static_cast<int>(found.views.size());
   fix.chi2 = pose->chi2;
+  fix.pull_found = pose->pull_found;
+  fix.pull_expected = pose->pull_expected;
   std::vector<char> seen(half_rig.cameras.size(), 0);
   for (std::size_t i = 0; i < found.views.size(); ++i) {
     if (!pose->inlier[i]) continue;

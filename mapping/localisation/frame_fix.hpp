@@ -17,8 +17,8 @@ struct FrameFixOptions {
   LandmarkPoseOptions pose;
   int min_inliers = 20;
   double min_azimuth_rad = 1.5707963;  ///< that inliers of a single camera must span
-  /// Divides the information of the landmarks, because errors of neighbouring ones are common.
-  double information_discount = 4.0;
+  /// Multiplies the covariance that independent errors of the stated sizes would give.
+  double noise_factor = 1.0;
   bool use_prior = true;  ///< the prediction takes part in the pose
   /// Multiplies the information of the prediction. It comes from the same landmarks as seen before,
   /// so that their errors would count twice.
@@ -43,6 +43,8 @@ struct FrameFix {
   int cameras = 0;                             ///< that have inliers
   double azimuth_rad = 0.0;  ///< that the inliers span around the vehicle, 0 to 2 pi
   double chi2 = 0.0;         ///< of the inliers; 2 per inlier expected
+  double pull_found = 0.0;   ///< of LandmarkPose
+  double pull_expected = 0.0;
 
   [[nodiscard]] int inliers() const { return static_cast<int>(views.size()); }
 };

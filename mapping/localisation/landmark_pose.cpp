@@ -8,7 +8,10 @@
 #include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <numbers>
+#include <utility>
 
 #include "base/index.hpp"
 #include "mapping/optimisation/ceres_solve.hpp"
@@ -104,8 +107,21 @@ struct Terms {
   std::vector<std::size_t> pixel;  // of each cost
 };
 
+struct Group {
+  Vector6d g = Vector6d::Zero();
+  Matrix6d H = Matrix6d::Zero();
+};
+
+// The group of a landmark: its camera and the eighth of the horizon around the vehicle.
+std::pair<int, int> group_of(const LandmarkPixel& seen, const Eigen::Isometry3d& T_vehicle_map) {
+  const Eigen::Vector3d p = T_vehicle_map * seen.p_map;
+  const double eighths = (std::atan2(p.y(), p.x()) / std::numbers::pi + 1.0) * 4.0;
+  return {seen.camera, std::min(7, static_cast<int>(eighths))};
+}
+
 // Errors, inliers and normal equations at the final pose.
 void judge(const Terms& terms,
+           std::span<const LandmarkPixel> pixels,
            const Step& step,
            const LandmarkPoseOptions& options,
            LandmarkPose& pose) {
@@ -113,6 +129,8 @@ void judge(const Terms& terms,
   const double width = options.loss_sigma * options.loss_sigma;
   const double* parameters = step.data();
   const Matrix6d step_of_xi = perturbation_of_step(step).inverse();
+  const Eigen::Isometry3d T_vehicle_map = pose.T_map_vehicle.inverse();
+  std::map<std::pair<int, int>, Group> groups;
   for (std::size_t i = 0; i < terms.costs.size(); ++i) {
     Eigen::Vector2d e;
     Eigen::Matrix<double, 2, 6, Eigen::RowMajor> J;
@@ -121,11 +139,21 @@ void judge(const Terms& terms,
     const double chi2 = e.squaredNorm();
     const double weight = 1.0 / (1.0 + chi2 / width);
     const Eigen::Matrix<double, 2, 6> J_xi = J * step_of_xi;
-    pose.information.noalias() += weight * J_xi.transpose() * J_xi;
+    Group& group = groups[group_of(pixels[terms.pixel[i]], T_vehicle_map)];
+    group.H.noalias() += weight * J_xi.transpose() * J_xi;
+    group.g.noalias() += weight * J_xi.transpose() * e;
     if (chi2 > gate) continue;
     pose.inlier[terms.pixel[i]] = 1;
     pose.chi2 += chi2;
     ++pose.inliers;
+  }
+  for (const auto& [key, group] : groups) pose.information += group.H;
+  const Matrix6d inverse =
+      (pose.information + 1e-9 * Matrix6d::Identity()).ldlt().solve(Matrix6d::Identity());
+  for (const auto& [key, group] : groups) {
+    const Matrix6d share = group.H * inverse;
+    pose.pull_found += group.g.dot(inverse * group.g);
+    pose.pull_expected += share.trace() - (share * share).trace();
   }
 }
 
@@ -178,7 +206,7 @@ std::optional<LandmarkPose> solve_landmark_pose(const Rig& rig,
   pose.T_map_vehicle.linear() = nearest_rotation(pose.T_map_vehicle.linear());
   pose.inlier.assign(pixels.size(), 0);
   if (!pose.T_map_vehicle.matrix().allFinite()) return std::nullopt;
-  judge(terms, step, options, pose);
+  judge(terms, pixels, step, options, pose);
   return pose;
 }
 

@@ -35,12 +35,22 @@ struct LandmarkPose {
   std::vector<std::uint8_t> inlier;  ///< by landmark
   int inliers = 0;
   double chi2 = 0.0;  ///< sum of the squared normalised errors of inliers, 2 * inliers expected
+  /// How far groups of errors pull the pose together, and how far independent errors of the stated
+  /// size would. `found / expected` is the factor on the covariance of the pose.
+  double pull_found = 0.0;
+  double pull_expected = 0.0;
 };
 
 /// Minimises the reprojection errors of landmarks by Ceres [metric-semantic maps, section IV-C].
 /// An error is normalised by the covariance of the corner and of the landmark, seen from `initial`;
 /// Cauchy loss. `prior`: what else is known of the pose; empty: nothing. Derivatives: Ceres' dual
 /// numbers through `project_with`. One thread. Empty if the pose is not determined.
+///
+/// Groups for the pull: the landmarks of one camera in one eighth of the horizon, whose errors have
+/// causes in common. With J, r and H of the normal equations and g = J^T r of a group,
+/// found = sum g^T H^-1 g, expected = sum tr((H_g - H_g H^-1 H_g) H^-1), as residuals are what the
+/// six parameters leave of the errors (Liang and Zeger 1986, with the leverage of Bell and
+/// McCaffrey 2002).
 [[nodiscard]] std::optional<LandmarkPose> solve_landmark_pose(
     const Rig& rig,
     std::span<const LandmarkPixel> pixels,

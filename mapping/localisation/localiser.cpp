@@ -20,18 +20,24 @@ double seconds(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) * 1e-9;
 }
 
-// What two sources that may share errors know together: along each common axis what the better one
-// knows.
-Matrix6d better_of(const Matrix6d& a, const Matrix6d& b) {
-  // a = L L^T; L^-1 b L^-T = V D V^T. In the coordinates V^T L^-1 x, a is 1 and b is D.
-  const Eigen::LLT<Matrix6d> llt(a);
-  if (llt.info() != Eigen::Success) return b;
+// Covariance of a fix beside its prediction. Both come from the same landmarks, so they do not add
+// up: along each of their common axes the fix counts, or the prediction where the fix knows much
+// less.
+Matrix6d covariance_of_fix(const Matrix6d& predicted, const Matrix6d& fix) {
+  constexpr double kMuchLess = 4.0;
+  // predicted = L L^T; L^-1 fix L^-T = V D V^T: in the coordinates V^T L^-1 x, the prediction has
+  // the variances 1 and the fix has D.
+  const Eigen::LLT<Matrix6d> llt(predicted);
+  if (llt.info() != Eigen::Success) return fix;
   const Matrix6d L = llt.matrixL();
-  const Matrix6d inner = L.triangularView<Eigen::Lower>().solve(
-      L.triangularView<Eigen::Lower>().solve(b).transpose().eval());
+  const Matrix6d half = L.triangularView<Eigen::Lower>().solve(fix);
+  const Matrix6d inner = L.triangularView<Eigen::Lower>().solve(half.transpose().eval());
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(0.5 * (inner + inner.transpose()));
+  Vector6d variances = eigen.eigenvalues();
+  for (double& v : variances)
+    if (v > kMuchLess) v = 1.0;
   const Matrix6d axes = L * eigen.eigenvectors();
-  return axes * eigen.eigenvalues().cwiseMin(1.0).asDiagonal() * axes.transpose();
+  return axes * variances.asDiagonal() * axes.transpose();
 }
 
 // A vehicle whose pose is known, or supposed.
@@ -86,9 +92,13 @@ struct Localiser::State {
   std::optional<VehicleTrack> track;
   std::optional<std::int64_t> last_try_ns;
   bool confirmed = false;
+  // Sums over past frames, which fade: the factor on the covariance of a fix is their ratio.
+  double pull_found = 0.0;
+  double pull_expected = 0.0;
+  double before_noise_factor = 1.0;
 
   State(const LandmarkIndex& i, Rig r, const LocaliserOptions& o)
-      : index(i), rig(std::move(r)), options(o) {
+      : index(i), rig(std::move(r)), options(o), before_noise_factor(o.fix.noise_factor) {
     options.check();
   }
 
@@ -101,6 +111,7 @@ struct Localiser::State {
   [[nodiscard]] bool is_lost() const;
   bool try_fix(const FrameCorners& corners, LocalisedFrame& result);
   bool fix_without_motion(const FrameCorners& corners);
+  void learn_noise(const FrameFix& fix);
   void take_fix(const Eigen::Isometry3d& T_map_vehicle, const Matrix6d& covariance);
   void look_for_place(const LocaliserFrame& frame, const FrameCorners& corners);
   [[nodiscard]] bool agrees_with_start(const Eigen::Isometry3d& T_map_vehicle) const;
@@ -167,8 +178,21 @@ bool Localiser::State::try_fix(const FrameCorners& corners, LocalisedFrame& resu
   result.views = std::move(fix->views);
   result.cameras = fix->cameras;
   result.chi2 = fix->chi2;
-  take_fix(fix->T_map_vehicle, better_of(t.pose.covariance, fix->covariance));
+  take_fix(fix->T_map_vehicle, covariance_of_fix(t.pose.covariance, fix->covariance));
+  learn_noise(*fix);
   return true;
+}
+
+// Errors of the landmarks are larger or smaller than stated, and neighbours have errors in common.
+void Localiser::State::learn_noise(const FrameFix& fix) {
+  constexpr double kFading = 0.98;       // a frame's weight halves in 34 frames
+  constexpr double kLeastFactor = 0.25;  // pairs are chosen among those near the prediction
+  pull_found = kFading * pull_found + fix.pull_found;
+  pull_expected = kFading * pull_expected + fix.pull_expected;
+  // Until there are some frames, the factor of the options counts as much as these.
+  constexpr double kBefore = 50.0;
+  const double factor = (pull_found + kBefore * before_noise_factor) / (pull_expected + kBefore);
+  options.fix.noise_factor = std::max(kLeastFactor, factor);
 }
 
 void Localiser::State::take_fix(const Eigen::Isometry3d& T_map_vehicle,
