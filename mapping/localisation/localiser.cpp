@@ -319,8 +319,14 @@ LocalisedFrame Localiser::add(LocaliserFrame frame) {
                               : LocalisationStatus::kPredicted;
   if (s.confirmed && has_fix) result.status = LocalisationStatus::kRelocalised;
   result.T_map_vehicle = t.pose.T_map_vehicle;
-  result.covariance = t.pose.covariance;
+  result.local_covariance = t.pose.covariance;
   result.keyframe = s.index.nearest_keyframe(t.pose.T_map_vehicle.translation());
+  if (result.keyframe >= 0) {
+    const Map& map = s.index.map();
+    result.covariance = compose_covariance(
+        map.keyframes[at(result.keyframe)].covariance,
+        map.T_map_vehicle(result.keyframe).inverse() * t.pose.T_map_vehicle, t.pose.covariance);
+  }
   result.since_fix_m = t.since_fix_m;
   return result;
 }

@@ -63,8 +63,11 @@ struct LocalisedFrame {
   /// A pose without prediction that driving has not confirmed yet; `status` is kLost.
   bool tentative = false;
   Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();  ///< meaningless when lost
-  /// Of the right perturbation, against the landmarks around; NaN: unknown.
+  /// Of the right perturbation, in the map frame: `local_covariance` and that of the map's nearest
+  /// pose; NaN: unknown, as in a map without covariances.
   Matrix6d covariance = unknown_covariance<Matrix6d>();
+  /// The same against the landmarks around, and so against lanes and labels that lie there.
+  Matrix6d local_covariance = unknown_covariance<Matrix6d>();
   int keyframe = -1;                ///< nearest of the map; -1: lost
   std::vector<LandmarkView> views;  ///< inliers
   std::vector<int> in_view;         ///< landmarks that project into an image, ascending

@@ -20,7 +20,9 @@ std::string header() {
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = i; j < 6; ++j)
       text += std::string(",cov_") + kComponent[i] + "_" + kComponent[j];
-  return text + ",map_frame,landmarks,matched,inliers,cameras,chi2,since_fix [m],cpu [ms]\n";
+  return text +
+         ",map_frame,landmarks,matched,inliers,cameras,chi2,since_fix [m],cpu [ms]"
+         ",local_sigma_x [m],local_sigma_y [m],local_sigma_heading [rad]\n";
 }
 
 std::string value(double x, int decimals) { return std::isfinite(x) ? fixed(x, decimals) : ""; }
@@ -76,8 +78,10 @@ std::string localised_csv(const std::vector<TimedFrame>& frames, const Map& map)
     else
       text += "," + std::to_string(pose.in_view.size()) + "," + std::to_string(pose.matched) + "," +
               std::to_string(pose.views.size()) + "," + std::to_string(pose.cameras);
-    text += "," + value(pose.chi2, 2) + "," + value(pose.since_fix_m, 3) + "," +
-            value(frame.cpu_ms, 2) + "\n";
+    text +=
+        "," + value(pose.chi2, 2) + "," + value(pose.since_fix_m, 3) + "," + value(frame.cpu_ms, 2);
+    for (const int i : {0, 1, 5}) text += "," + value(std::sqrt(pose.local_covariance(i, i)), 6);
+    text += "\n";
   }
   return text;
 }

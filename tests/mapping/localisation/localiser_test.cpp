@@ -20,7 +20,7 @@ struct Driven {
   [[nodiscard]] Vector6d error() const { return se3_log(pose.T_map_vehicle.inverse() * T_true); }
   [[nodiscard]] double off_m() const { return error().head<3>().norm(); }
   [[nodiscard]] double nees() const {
-    return error().dot(pose.covariance.ldlt().solve(error())) / 6.0;
+    return error().dot(pose.local_covariance.ldlt().solve(error())) / 6.0;
   }
   [[nodiscard]] bool has_fix() const {
     return pose.status == LocalisationStatus::kLocalised ||
@@ -104,7 +104,7 @@ TEST(Localiser, CovariancesHoldOverManyDrives) {
     for (std::size_t i = driven.size() - kUsed; i < driven.size(); ++i) {
       nees += driven[i].nees();
       const Eigen::Vector2d place_error = driven[i].error().head<2>();
-      const Eigen::Matrix2d C = driven[i].pose.covariance.topLeftCorner<2, 2>();
+      const Eigen::Matrix2d C = driven[i].pose.local_covariance.topLeftCorner<2, 2>();
       in_ellipse += place_error.dot(C.ldlt().solve(place_error)) < 5.991 ? 1.0 : 0.0;
       ++count;
     }
@@ -130,17 +130,17 @@ TEST(Localiser, UncertaintyGrowsWithoutLandmarksAndShrinksAtTheNextOnes) {
   for (int i = kBegin; i < kEnd; ++i) {
     const Driven& d = driven[at(i)];
     ASSERT_EQ(d.pose.status, LocalisationStatus::kPredicted) << i;
-    const double sigma = std::sqrt(d.pose.covariance(0, 0));
+    const double sigma = std::sqrt(d.pose.local_covariance(0, 0));
     EXPECT_GT(sigma, before) << i;
     EXPECT_LT(d.error().head<2>().norm(),
-              3.5 * std::hypot(sigma, std::sqrt(d.pose.covariance(1, 1))));
+              3.5 * std::hypot(sigma, std::sqrt(d.pose.local_covariance(1, 1))));
     before = sigma;
   }
   // The noise of the wheels over 10 m: 1 cm per root metre, and 2 % that does not average out.
   EXPECT_NEAR(before, std::hypot(0.01 * std::sqrt(10.0), 0.02 * 10.0), 0.03);
   EXPECT_NEAR(driven[kEnd - 1].pose.since_fix_m, 62 * kStep, 0.3);
   EXPECT_TRUE(driven[kEnd].has_fix());
-  EXPECT_LT(std::sqrt(driven[kEnd].pose.covariance(0, 0)), 0.02);
+  EXPECT_LT(std::sqrt(driven[kEnd].pose.local_covariance(0, 0)), 0.02);
   EXPECT_LT(driven[kEnd].off_m(), 0.03);
 }
 
@@ -225,7 +225,9 @@ TEST(Localiser, ACarThatStandsDoesNotBecomeSurer) {
   drive.frames = 110;
   drive.way_m = [](int i) { return kStep * std::min(i, 30); };
   const auto driven = drive_through(place, index, drive);
-  const auto sigma = [&](std::size_t i) { return std::sqrt(driven[i].pose.covariance(0, 0)); };
+  const auto sigma = [&](std::size_t i) {
+    return std::sqrt(driven[i].pose.local_covariance(0, 0));
+  };
   EXPECT_GT(sigma(109), 0.6 * sigma(40));
   EXPECT_LT(sigma(109), 1.5 * sigma(40));
 }
