@@ -42,6 +42,7 @@ Experiment laps_experiment();
 Experiment rows_experiment();
 Experiment robustness_experiment();
 Experiment covariance_experiment();
+Experiment localisation_experiment();
 
 /// Returns all experiments. To add one, declare its function above and list it in
 /// apps/verbs/evaluate_verb.cpp.

@@ -41,21 +41,6 @@ Json truth_json(const LocalisationTruth& truth) {
 
 std::string percent(double share) { return fixed(100.0 * share, 1) + " %"; }
 
-void say_figures(const Console& console, const LocalisationFigures& f) {
-  std::string line = std::to_string(f.localised) + " of " + std::to_string(f.frames) +
-                     " frames localised, " + std::to_string(f.predicted) +
-                     " by the motion alone, " + std::to_string(f.lost.size()) + " times lost";
-  if (f.inliers_median)
-    line += "; " + fixed(*f.inliers_median, 0) + " landmarks in the median frame";
-  if (f.cpu_ms_median) line += ", " + fixed(*f.cpu_ms_median, 1) + " ms of one core";
-  console.say(line);
-  if (f.truth)
-    console.say("truth: median " + fixed(100.0 * f.truth->median_m, 1) + " cm, 95 % within " +
-                fixed(100.0 * f.truth->p95_m, 1) + " cm, largest " +
-                fixed(100.0 * f.truth->max_m, 1) + " cm; " + percent(f.truth->recall_0_1_m) +
-                " of the frames within 10 cm");
-}
-
 }  // namespace
 
 std::optional<StartPose> start_pose(const std::string& text) {
@@ -73,23 +58,42 @@ std::optional<StartPose> start_pose(const std::string& text) {
   return StartPose{numbers[0], numbers[1], numbers[2]};
 }
 
+std::vector<std::string> localisation_lines(const LocalisationFigures& f) {
+  std::string line = std::to_string(f.localised) + " of " + std::to_string(f.frames) +
+                     " frames localised, " + std::to_string(f.predicted) +
+                     " by the motion alone, " + std::to_string(f.lost.size()) + " times lost";
+  if (f.inliers_median)
+    line += "; " + fixed(*f.inliers_median, 0) + " landmarks in the median frame";
+  if (f.cpu_ms_median) line += ", " + fixed(*f.cpu_ms_median, 1) + " ms of one core";
+  std::vector<std::string> lines{line};
+  if (f.truth)
+    lines.push_back("truth: median " + fixed(100.0 * f.truth->median_m, 1) + " cm, 95 % within " +
+                    fixed(100.0 * f.truth->p95_m, 1) + " cm, largest " +
+                    fixed(100.0 * f.truth->max_m, 1) + " cm; " + percent(f.truth->recall_0_1_m) +
+                    " of the frames within 10 cm");
+  return lines;
+}
+
+Json to_json(const LocalisationFigures& f) {
+  return {{"frames", f.frames},
+          {"localised", f.localised},
+          {"predicted", f.predicted},
+          {"lost", lost_json(f.lost)},
+          {"relocalised", f.relocalised},
+          {"inliers", {{"median", number(f.inliers_median)}, {"p5", number(f.inliers_p5)}}},
+          {"cpu_ms", {{"median", number(f.cpu_ms_median)}, {"p99", number(f.cpu_ms_p99)}}},
+          {"jumps_m", {{"median", number(f.jump_median_m)}, {"p999", number(f.jump_p999_m)}}},
+          {"truth", f.truth ? truth_json(*f.truth) : Json(nullptr)}};
+}
+
 void print_localisation(const Console& console, const LocaliseResult& result) {
-  const LocalisationFigures& f = result.figures;
   console.warn(result.warnings);
-  say_figures(console, f);
-  console.result(
-      {{"frames", f.frames},
-       {"localised", f.localised},
-       {"predicted", f.predicted},
-       {"lost", lost_json(f.lost)},
-       {"relocalised", f.relocalised},
-       {"inliers", {{"median", number(f.inliers_median)}, {"p5", number(f.inliers_p5)}}},
-       {"cpu_ms", {{"median", number(f.cpu_ms_median)}, {"p99", number(f.cpu_ms_p99)}}},
-       {"jumps_m", {{"median", number(f.jump_median_m)}, {"p999", number(f.jump_p999_m)}}},
-       {"map_digest", result.map_digest},
-       {"sessions_used", result.sessions_used},
-       {"truth", f.truth ? truth_json(*f.truth) : Json(nullptr)},
-       {"warnings", to_json(result.warnings)}});
+  for (const std::string& line : localisation_lines(result.figures)) console.say(line);
+  Json json = to_json(result.figures);
+  json["map_digest"] = result.map_digest;
+  json["sessions_used"] = result.sessions_used;
+  json["warnings"] = to_json(result.warnings);
+  console.result(json);
 }
 
 }  // namespace roadbook

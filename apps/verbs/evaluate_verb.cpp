@@ -31,9 +31,10 @@ ExitStatus run_evaluate(const EvaluateCommand& command, Console& console) {
 }  // namespace
 
 std::vector<Experiment> all_experiments() {
-  return {spm_experiment(),       speeds_experiment(),     people_experiment(),
-          labels_experiment(),    laps_experiment(),       rows_experiment(),
-          diagnosis_experiment(), robustness_experiment(), covariance_experiment()};
+  return {spm_experiment(),         speeds_experiment(),     people_experiment(),
+          labels_experiment(),      laps_experiment(),       rows_experiment(),
+          diagnosis_experiment(),   robustness_experiment(), covariance_experiment(),
+          localisation_experiment()};
 }
 
 Verb evaluate_verb() {

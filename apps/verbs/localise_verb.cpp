@@ -12,7 +12,7 @@ Verb localise_verb() {
   auto start = std::make_shared<std::string>();
   auto every = std::make_shared<std::string>("all");
   auto stay_lost = std::make_shared<bool>(false);
-  auto landmarks = std::make_shared<int>(1500);
+  auto landmarks = std::make_shared<int>(3000);
   return {
       "localise", "finds the poses of a drive in a map, which stays as it is",
       [=](Options& options) {

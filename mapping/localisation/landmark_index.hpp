@@ -24,7 +24,7 @@ struct KnownLandmark {
 
 struct NearLandmarksOptions {
   double reach_m = 4.0;              ///< between the vehicle and the keyframes that saw a landmark
-  std::size_t max_landmarks = 1500;  ///< the ones with the most views from there stay
+  std::size_t max_landmarks = 3000;  ///< the ones with the most views from there stay
   double angle_rad = 0.6;            ///< beyond the directions from which a landmark was seen
   double distance_factor = 2.0;      ///< beyond the distances from which it was seen
 

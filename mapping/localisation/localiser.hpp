@@ -37,7 +37,7 @@ struct LocaliserOptions {
   double lost_after_m = 20.0;    ///< driven since the last fix
   double confirm_m = 2.0;        ///< driven before a pose without prediction is believed
   double confirm_share = 0.6;    ///< of the frames meanwhile, that must have a fix
-  double retry_s = 0.25;         ///< between two tries to relocalise
+  double retry_s = 0.08;         ///< between two tries to relocalise
   /// Errors of the wheels that do not average out, relative to way and turn since the last fix.
   double wheel_error = 0.02;
   /// Without wheels the car keeps its velocity, but for these accelerations.

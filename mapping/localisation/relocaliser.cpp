@@ -53,18 +53,6 @@ void match_camera(const Features& features,
                          index.landmarks()[at(landmarks[i])].p_map});
 }
 
-// Most landmarks that one of the map's keyframes near the place saw: what a frame there should see.
-std::size_t usually_seen(const LandmarkIndex& index, const Eigen::Vector3d& p_map) {
-  constexpr double kNear = 3.0;  // [m]
-  std::vector<std::size_t> counts;
-  for (const int k : index.keyframes_near(p_map, kNear))
-    counts.push_back(index.seen_from(k).size());
-  if (counts.empty()) return 0;
-  const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
-  std::nth_element(counts.begin(), middle, counts.end());
-  return *middle;
-}
-
 }  // namespace
 
 void RelocaliseOptions::check() const {
@@ -101,6 +89,7 @@ std::vector<int> Relocaliser::voted(const FrameCorners& corners) const {
   });
   std::vector<int> places;
   for (const int k : order) {
+    if (votes[at(k)] < options_.vote_share * votes[at(order.front())]) break;
     const Eigen::Vector3d p = map.T_map_vehicle(k).translation();
     const bool is_taken = std::any_of(places.begin(), places.end(), [&](int other) {
       return (map.T_map_vehicle(other).translation() - p).norm() < options_.apart_m;
@@ -153,8 +142,7 @@ std::optional<PlaceFound> Relocaliser::verify(const Rig& half_rig,
   if (!fix || fix->inliers() < options_.min_inliers || !has_enough(*fix, half_rig, alone))
     return std::nullopt;
   PlaceFound found{std::move(*fix), keyframe};
-  const auto usual = usually_seen(index_, found.fix.T_map_vehicle.translation());
-  found.share = usual > 0 ? found.fix.inliers() / static_cast<double>(usual) : 0.0;
+  found.share = found.fix.inliers() / static_cast<double>(matches.size());
   if (found.share < options_.min_share) return std::nullopt;
   return found;
 }

@@ -23,22 +23,6 @@ bool has_fix(const TimedFrame& frame) {
          frame.pose.status == LocalisationStatus::kRelocalised;
 }
 
-std::optional<Eigen::Isometry3d> pose_at(const std::vector<TimedPose>& poses, std::int64_t t_ns) {
-  constexpr std::int64_t kLongestNs = 500'000'000;  // between two poses of the truth
-  const auto after =
-      std::lower_bound(poses.begin(), poses.end(), t_ns,
-                       [](const TimedPose& pose, std::int64_t t) { return pose.t_ns < t; });
-  if (after == poses.end()) return std::nullopt;
-  if (after->t_ns == t_ns) return after->T_world_vehicle;
-  if (after == poses.begin()) return std::nullopt;
-  const auto before = after - 1;
-  if (after->t_ns - before->t_ns > kLongestNs) return std::nullopt;
-  const double share =
-      static_cast<double>(t_ns - before->t_ns) / static_cast<double>(after->t_ns - before->t_ns);
-  const Vector6d step = se3_log(before->T_world_vehicle.inverse() * after->T_world_vehicle);
-  return before->T_world_vehicle * se3_exp(share * step);
-}
-
 struct Errors {
   std::vector<double> distance, along, across, heading;
   std::size_t with_truth = 0;
@@ -68,6 +52,23 @@ void add_error(const LocalisedFrame& pose, const Eigen::Isometry3d& T_map_true, 
 }
 
 }  // namespace
+
+std::optional<Eigen::Isometry3d> true_pose_at(const std::vector<TimedPose>& poses,
+                                              std::int64_t t_ns) {
+  constexpr std::int64_t kLongestNs = 500'000'000;  // between two poses of the truth
+  const auto after =
+      std::lower_bound(poses.begin(), poses.end(), t_ns,
+                       [](const TimedPose& pose, std::int64_t t) { return pose.t_ns < t; });
+  if (after == poses.end()) return std::nullopt;
+  if (after->t_ns == t_ns) return after->T_world_vehicle;
+  if (after == poses.begin()) return std::nullopt;
+  const auto before = after - 1;
+  if (after->t_ns - before->t_ns > kLongestNs) return std::nullopt;
+  const double share =
+      static_cast<double>(t_ns - before->t_ns) / static_cast<double>(after->t_ns - before->t_ns);
+  const Vector6d step = se3_log(before->T_world_vehicle.inverse() * after->T_world_vehicle);
+  return before->T_world_vehicle * se3_exp(share * step);
+}
 
 LocalisationFigures localisation_figures(const std::vector<TimedFrame>& frames) {
   LocalisationFigures figures;
@@ -106,7 +107,7 @@ std::optional<LocalisationTruth> localisation_truth(const std::vector<TimedFrame
                                                     const Eigen::Isometry3d& T_map_world) {
   Errors errors;
   for (const TimedFrame& frame : frames) {
-    const auto T_world_true = pose_at(truth, frame.pose.t_ns);
+    const auto T_world_true = true_pose_at(truth, frame.pose.t_ns);
     if (!T_world_true) continue;
     ++errors.with_truth;
     if (has_fix(frame)) add_error(frame.pose, T_map_world * *T_world_true, errors);

@@ -52,6 +52,11 @@ struct LocalisationFigures {
   std::optional<LocalisationTruth> truth;
 };
 
+/// The pose at a stamp, interpolated between poses at most 0.5 s apart; empty where there are none.
+/// `poses` ascend in time.
+[[nodiscard]] std::optional<Eigen::Isometry3d> true_pose_at(const std::vector<TimedPose>& poses,
+                                                            std::int64_t t_ns);
+
 /// Counts frames and takes the quantiles over them. Values that no frame has are empty.
 [[nodiscard]] LocalisationFigures localisation_figures(const std::vector<TimedFrame>& frames);
 
