@@ -3,6 +3,7 @@
 #include "apps/evaluate.hpp"
 #include "apps/evaluation/localisation/localisation_study.hpp"
 #include "apps/summaries/localise_summary.hpp"
+#include "base/error.hpp"
 #include "base/format.hpp"
 #include "base/whole_file.hpp"
 
@@ -30,13 +31,15 @@ std::string words_of(const StartTally& t) {
 
 void run_localisation(Console& console, const EvaluateCommand& command) {
   LocalisationStudyOptions options;
-  options.places = {"zurich", "stuttgart"};
+  for (const char* place : {"zurich", "stuttgart"})
+    if (std::string_view(place).starts_with(command.only)) options.places.emplace_back(place);
+  if (options.places.empty())
+    throw InvalidOption("--only", "'" + command.only + "'", "zurich or stuttgart");
   options.seed = command.seed;
   options.num_threads = command.threads;
   if (command.quick) {
     options.size = "small";
     options.image_scale = 0.5;
-    options.visits = 1;
     options.starts = 50;
   }
   if (command.repeats > 0) options.starts = static_cast<std::size_t>(command.repeats);
@@ -67,10 +70,11 @@ void run_localisation(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment localisation_experiment() {
-  return {"localisation",
-          "later visits in the map of the first one, and random starts without a guess (--repeats: "
-          "starts a visit); drives and maps stay in the folder and are used again",
-          run_localisation};
+  return {
+      "localisation",
+      "later visits in the map of the first one, and random starts without a guess (--repeats: "
+      "starts a visit, --only: one place); drives and maps stay in the folder and are used again",
+      run_localisation};
 }
 
 }  // namespace roadbook
