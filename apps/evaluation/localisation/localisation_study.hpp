@@ -18,7 +18,7 @@ struct LocalisationStudyOptions {
   std::vector<std::string> places;  ///< built-in scenarios
   std::string size = "full";        ///< of the places: full, small
   double image_scale = 1.0;
-  int visits = 2;            ///< later visits of each place
+  int visits = 1;            ///< later visits of each place
   std::size_t starts = 500;  ///< random ones a visit, at least 1
   std::uint64_t seed = 1;
   int num_threads = 0;
