@@ -1,15 +1,18 @@
 #include <memory>
 
 #include "apps/output_option.hpp"
+#include "apps/report/localisation_picture.hpp"
 #include "apps/summaries/localise_summary.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
+#include "base/whole_file.hpp"
 
 namespace roadbook {
 
 Verb localise_verb() {
   auto command = std::make_shared<LocaliseRequest>();
   auto start = std::make_shared<std::string>();
+  auto picture = std::make_shared<std::filesystem::path>();
   auto every = std::make_shared<std::string>("all");
   auto stay_lost = std::make_shared<bool>(false);
   auto landmarks = std::make_shared<int>(3000);
@@ -20,6 +23,8 @@ Verb localise_verb() {
         options.add("--map,-m", &command->map, "map file").required = true;
         options.add("--output,-o", &command->poses, "TUM trajectory to write").required = true;
         options.add("--frames", &command->frames, "CSV table to write, with a row for each frame");
+        options.add("--picture", picture.get(),
+                    "SVG file to write: the drive in the map, its uncertainty and its landmarks");
         options.add("--every", every.get(), "frames to localise").choices = {"all", "keyframe"};
         options.add("--start", start.get(),
                     "where the drive begins, X,Y,HEADING in the map [m, m, rad]");
@@ -42,7 +47,8 @@ Verb localise_verb() {
       },
       [=](Console& console, const CommonOptions& common) {
         refuse_to_replace(command->map, command->poses);
-        if (!command->frames.empty()) refuse_to_replace(command->map, command->frames);
+        for (const auto& file : {command->frames, *picture})
+          if (!file.empty()) refuse_to_replace(command->map, file);
         command->options.tracking.num_threads = common.threads;
         command->options.start = start_pose(*start);
         command->options.localiser.may_relocalise = !*stay_lost;
@@ -51,6 +57,7 @@ Verb localise_verb() {
             command->options.localiser.relocalise.seed;
         if (*every == "keyframe") command->options.frames = LocalisedFrames::kKeyframes;
         const LocaliseResult result = localise_in_map(*command, console);
+        if (!picture->empty()) write_whole_file(*picture, localisation_picture(result));
         print_localisation(console, result);
         if (result.refusal) throw *result.refusal;
         return ExitStatus::kDone;

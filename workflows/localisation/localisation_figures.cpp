@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/se3.hpp"
 
@@ -100,6 +101,20 @@ LocalisationFigures localisation_figures(const std::vector<TimedFrame>& frames) 
   figures.jump_median_m = quantile(jumps, 0.5);
   figures.jump_p999_m = quantile(jumps, 0.999);
   return figures;
+}
+
+std::vector<double> localisation_errors(const std::vector<TimedFrame>& frames,
+                                        const std::vector<TimedPose>& truth,
+                                        const Eigen::Isometry3d& T_map_world) {
+  std::vector<double> off_m(frames.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].pose.status == LocalisationStatus::kLost) continue;
+    const auto T = true_pose_at(truth, frames[i].pose.t_ns);
+    if (!T) continue;
+    const Eigen::Vector3d there = T_map_world * T->translation();
+    off_m[i] = (frames[i].pose.T_map_vehicle.translation() - there).norm();
+  }
+  return off_m;
 }
 
 std::optional<LocalisationTruth> localisation_truth(const std::vector<TimedFrame>& frames,

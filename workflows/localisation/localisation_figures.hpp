@@ -60,6 +60,12 @@ struct LocalisationFigures {
 /// Counts frames and takes the quantiles over them. Values that no frame has are empty.
 [[nodiscard]] LocalisationFigures localisation_figures(const std::vector<TimedFrame>& frames);
 
+/// Distance [m] of each frame's pose from the true one, predicted poses included; NaN where there
+/// is no pose or no truth.
+[[nodiscard]] std::vector<double> localisation_errors(const std::vector<TimedFrame>& frames,
+                                                      const std::vector<TimedPose>& truth,
+                                                      const Eigen::Isometry3d& T_map_world);
+
 /// Compares localised poses with the true poses of the drive, interpolated in time. `T_map_world`:
 /// the pose of the truth's world in the map. Empty if no frame has truth.
 [[nodiscard]] std::optional<LocalisationTruth> localisation_truth(

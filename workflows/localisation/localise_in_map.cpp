@@ -90,8 +90,13 @@ LocaliseResult localise_in_map(const LocaliseRequest& request, Messages& message
   const auto warnings = drive.warnings();
   result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
   result.figures = localisation_figures(result.frames);
-  if (const auto T_map_world = world_in_map(request.map, map, drive))
-    result.figures.truth = localisation_truth(result.frames, true_poses(drive), *T_map_world);
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k)
+    result.map_places.emplace_back(map.T_map_vehicle(static_cast<int>(k)).translation().head<2>());
+  if (const auto T_map_world = world_in_map(request.map, map, drive)) {
+    const auto truth = true_poses(drive);
+    result.figures.truth = localisation_truth(result.frames, truth, *T_map_world);
+    result.off_m = localisation_errors(result.frames, truth, *T_map_world);
+  }
   if (!request.poses.empty())
     write_whole_file(request.poses, localised_tum(result.frames, request.with_predicted));
   if (!request.frames.empty()) write_whole_file(request.frames, localised_csv(result.frames, map));

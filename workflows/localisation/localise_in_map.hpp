@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -28,6 +29,8 @@ struct LocaliseRequest {
 struct LocaliseResult {
   std::vector<TimedFrame> frames;
   LocalisationFigures figures;
+  std::vector<double> off_m;  ///< true error of each frame; NaN: unknown; empty without truth
+  std::vector<Eigen::Vector2d> map_places;  ///< of the map's poses [m]
   std::string map_digest;
   std::vector<std::string> sessions_used;
   std::vector<Problem> warnings;
