@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json json_of(const StartTally& t) {
+ordered_json starts_json(const StartTally& t) {
   return {{"starts", t.starts},
           {"right", t.right},
           {"late", t.late},
@@ -22,7 +22,7 @@ ordered_json json_of(const StartTally& t) {
           {"largest_ms", t.largest_try_ms}};
 }
 
-std::string words_of(const StartTally& t) {
+std::string starts_line(const StartTally& t) {
   return std::to_string(t.starts) + " starts: " + std::to_string(t.right) + " right within 2 m, " +
          std::to_string(t.late) + " later, " + std::to_string(t.lost) + " lost, " +
          std::to_string(t.wrong) + " wrong; " + fixed(t.mean_try_ms, 0) + " ms of one core, " +
@@ -48,16 +48,17 @@ void run_localisation(Console& console, const EvaluateCommand& command) {
   for (const VisitFigures& v : study.visits) {
     const std::string name = v.place + ", visit " + std::to_string(v.visit) + ": ";
     for (const std::string& line : localisation_lines(v.drive)) console.say(name + line);
-    console.say(name + words_of(v.starts));
+    console.say(name + starts_line(v.starts));
     ordered_json json{{"place", v.place}, {"visit", v.visit}};
     json.update(to_json(v.drive));
-    json["random_starts"] = json_of(v.starts);
+    json["random_starts"] = starts_json(v.starts);
     visits.push_back(std::move(json));
   }
   ordered_json foreign = ordered_json::array();
   for (const ForeignFigures& f : study.foreign) {
-    console.say(f.place + " in the map of " + f.map + ": " + words_of(f.starts));
-    foreign.push_back({{"place", f.place}, {"map", f.map}, {"random_starts", json_of(f.starts)}});
+    console.say(f.place + " in the map of " + f.map + ": " + starts_line(f.starts));
+    foreign.push_back(
+        {{"place", f.place}, {"map", f.map}, {"random_starts", starts_json(f.starts)}});
   }
   const ordered_json json{{"experiment", "localisation"},
                           {"seed", command.seed},

@@ -35,7 +35,7 @@ struct RelocaliseOptions {
 struct PlaceFound {
   FrameFix fix;
   int keyframe = 0;        ///< of the map, of the place
-  double share = 0.0;      ///< of the landmarks that should be seen: the inliers
+  double share = 0.0;      ///< inliers of guided matching, of the matches by descriptor
   bool ambiguous = false;  ///< a second place explains the frame nearly as well
 };
 

@@ -52,7 +52,7 @@ struct LocalisationFigures {
   std::optional<LocalisationTruth> truth;
 };
 
-/// The pose at a stamp, interpolated between poses at most 0.5 s apart; empty where there are none.
+/// The pose at a stamp, interpolated between poses at most 0.5 s apart; empty outside them.
 /// `poses` ascend in time.
 [[nodiscard]] std::optional<Eigen::Isometry3d> true_pose_at(const std::vector<TimedPose>& poses,
                                                             std::int64_t t_ns);

@@ -11,7 +11,7 @@ namespace roadbook {
 /// `with_predicted`: of the predicted frames too.
 [[nodiscard]] std::string localised_tum(const std::vector<TimedFrame>& frames, bool with_predicted);
 
-/// A CSV table with a row for each frame (docs/guide/localisation.md). What is not known is
+/// A CSV table with a row for each frame (docs/guide/localisation.md). Unknown values are
 /// empty. `map`: where the frames were localised.
 [[nodiscard]] std::string localised_csv(const std::vector<TimedFrame>& frames, const Map& map);
 

@@ -30,7 +30,7 @@ void require_landmarks(const Map& map, const std::filesystem::path& file) {
                     "a map with landmarks (roadbook map)"});
 }
 
-// Says what the user may not expect of this drive in this map.
+// Warnings about this drive in this map.
 std::vector<Problem> doubts_about(const Drive& drive, const Map& map, const std::string& digest) {
   std::vector<Problem> doubts;
   for (const Session& session : map.sessions)

@@ -38,9 +38,9 @@ struct LocaliseResult {
 };
 
 /// Localises a drive in a map, which is only read, and writes the files. Truth is compared if the
-/// drive is simulated and the drive of a session of the same place is at hand. Throws BadInput (the
-/// drive or the map cannot be read, the map has no landmarks), InvalidOption (a start outside the
-/// map, a session that it does not have), StorageError, Interrupted.
+/// drive is simulated and the drive of a session of the same place is available. Throws BadInput
+/// (the drive or the map cannot be read, the map has no landmarks), InvalidOption (a start outside
+/// the map, a session that it does not have), StorageError, Interrupted.
 [[nodiscard]] LocaliseResult localise_in_map(const LocaliseRequest& request, Messages& messages);
 
 }  // namespace roadbook
