@@ -49,7 +49,7 @@ MapResult map_drives(const MapRequest& request, Messages& messages) {
   if (options.replace) refuse_same_drives(request.drives);
   const auto drives =
       options.replace ? request.drives : with_drives_of_map(request.map, request.drives, messages);
-  MapResult result{build_map(drives, request.map, options, messages.progress()), {}};
+  MapResult result{build_map(drives, request.map, options, messages.progress()), {}, drives};
   if (result.summary.is_unchanged) return result;
   if (options.vehicle)
     for (const auto& drive : drives) {

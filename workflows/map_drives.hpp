@@ -24,6 +24,7 @@ struct MapResult {
   MapSummary summary;
   std::vector<DroppedWork> dropped;  ///< layers that the new map lacks, with the commands that make
                                      ///< them
+  std::vector<std::filesystem::path> drives;  ///< of the map, in its order
 };
 
 /// Builds a map from drives, or extends an existing map with drives that it lacks. Keeps labels and

@@ -5,6 +5,7 @@
 #include "apps/summary_json.hpp"
 #include "apps/vehicle_option.hpp"
 #include "base/format.hpp"
+#include "mapping/pipeline/map_paths.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_names.hpp"
 
@@ -62,8 +63,10 @@ void say_rows(const Console& console, const EqualRowsUsed& rows) {
 }
 
 // Stores times and warnings of this run for `report`. They depend on the machine, so the content
-// digest does not include them.
-void remember_run(const std::filesystem::path& map, const MapSummary& summary) {
+// digest does not include them. Files are named as seen from the map.
+void remember_run(const std::filesystem::path& map, const MapResult& result) {
+  MapSummary summary = result.summary;
+  summary.warnings = problems_from_map(summary.warnings, result.drives, map);
   MapUpdate update(map);
   update.set_meta("place.summary", to_json(summary).dump());
   update.commit();
@@ -112,7 +115,7 @@ void print_unchanged(const Console& console,
 void print_map(const Console& console, const MapResult& result, const std::filesystem::path& map) {
   const MapSummary& summary = result.summary;
   if (summary.is_unchanged) return print_unchanged(console, summary, map);
-  remember_run(map, summary);
+  remember_run(map, result);
   console.warn(summary.warnings);
   console.warn(dropped_warnings(result.dropped, map));
   say_summary(console, summary);

@@ -16,13 +16,13 @@
 #include "mapping/pipeline/checkpoint_blobs.hpp"
 #include "mapping/pipeline/map_gate.hpp"
 #include "mapping/pipeline/map_inputs.hpp"
+#include "mapping/pipeline/map_paths.hpp"
 #include "mapping/pipeline/map_stages.hpp"
 #include "mapping/pipeline/odometry_checkpoint.hpp"
 #include "mapping/pipeline/short_segments.hpp"
 #include "mapping/pipeline/truth_error.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
-#include "mapping/store/map_file_disk.hpp"
 #include "mapping/store/map_file_lock.hpp"
 #include "vo/own_car_mask.hpp"
 
@@ -100,20 +100,13 @@ Problem short_segments_warning(const Drive& drive, int keyframes) {
           "images without gaps"};
 }
 
-std::string drive_path_of(const Drive& drive, const std::filesystem::path& map) {
-  std::error_code ignored;
-  const auto relative = std::filesystem::relative(
-      drive.folder(), std::filesystem::absolute(linked_file(map)).parent_path(), ignored);
-  return relative.empty() ? drive.folder().string() : relative.string();
-}
-
 Session session_of(const Drive& drive,
                    const OwnCar& car,
                    const MapOptions& options,
                    const std::filesystem::path& map) {
   Session session;
   session.name = drive.name();
-  session.drive_path = drive_path_of(drive, map);
+  session.drive_path = path_from_map(drive.folder(), map);
   session.drive_digest = drive.digest();
   session.rig = drive.rig();
   session.wheels = drive.wheel_model();
@@ -145,7 +138,7 @@ void renew_drive_paths(const Map& map,
                        const std::vector<Drive>& drives,
                        const std::filesystem::path& file) {
   std::vector<std::string> paths;
-  for (const Drive& drive : drives) paths.push_back(drive_path_of(drive, file));
+  for (const Drive& drive : drives) paths.push_back(path_from_map(drive.folder(), file));
   if (std::equal(paths.begin(), paths.end(), map.sessions.begin(), map.sessions.end(),
                  [](const std::string& path, const Session& s) { return path == s.drive_path; }))
     return;

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "mapping/pipeline/map_paths.hpp"
+#include "mapping/store/map_file_disk.hpp"
 #include "mapping/store/map_file_open.hpp"
 #include "workflows/diagnosis/diagnosis_json.hpp"
 #include "workflows/diagnosis/diagnosis_ledger.hpp"
@@ -15,10 +17,7 @@ using nlohmann::ordered_json;
 LedgerRun ledger_run(const DiagnosisRequest& request,
                      const DiagnosisRun& run,
                      const std::filesystem::path& map) {
-  std::error_code ignored;
-  const auto folder = std::filesystem::absolute(map).parent_path();
-  const auto relative = std::filesystem::relative(request.drive, folder, ignored);
-  return {relative.empty() ? request.drive.string() : relative.string(),
+  return {path_from_map(request.drive, map),
           run.digest,
           {{"known", request.known},
            {"without", request.without},
@@ -60,7 +59,7 @@ RepeatedRun repeat_ledger_run(const std::filesystem::path& map,
         "one of the " + std::to_string(runs.size()) + " runs kept in " + map.string());
   const LedgerRun& kept = runs[static_cast<std::size_t>(number - 1)];
   DiagnosisRequest request;
-  request.drive = std::filesystem::absolute(map).parent_path() / kept.drive;
+  request.drive = std::filesystem::absolute(linked_file(map)).parent_path() / kept.drive;
   if (kept.options.at("through_map").get<bool>()) request.map = map;
   request.known = kept.options.at("known").get<EffectSizes>();
   request.without = kept.options.at("without").get<std::vector<std::string>>();
