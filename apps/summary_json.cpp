@@ -50,7 +50,31 @@ ordered_json cameras_json(const std::vector<CameraFigures>& cameras) {
   return list;
 }
 
+// `truth` is null if the sessions have truth but no common alignment, and left out without truth.
+void add_truth(const MapSummary& summary, ordered_json& object) {
+  if (summary.truth_sessions.empty() && summary.truth_apart.empty()) return;
+  object["truth"] = nullptr;
+  if (summary.ate_median_m && summary.ate_p95_m)
+    object["truth"] = {{"ate_median_m", *summary.ate_median_m}, {"ate_p95_m", *summary.ate_p95_m}};
+  auto list = ordered_json::array();
+  for (const SessionTruth& s : summary.truth_sessions)
+    list.push_back({{"session", s.session},
+                    {"ate_median_m", number_or_null(s.ate_median_m)},
+                    {"ate_p95_m", number_or_null(s.ate_p95_m)},
+                    {"offset", to_json(s.offset)}});
+  object["truth_sessions"] = list;
+}
+
 }  // namespace
+
+ordered_json to_json(const std::optional<SessionOffset>& offset) {
+  if (!offset) return nullptr;
+  return {{"shift_m", offset->shift_m.norm()},
+          {"x_m", offset->shift_m.x()},
+          {"y_m", offset->shift_m.y()},
+          {"z_m", offset->shift_m.z()},
+          {"heading_rad", number_or_null(offset->heading_rad)}};
+}
 
 ordered_json to_json(const MapSummary& summary) {
   ordered_json object = {
@@ -67,8 +91,7 @@ ordered_json to_json(const MapSummary& summary) {
       {"pieces", summary.components},
       {"cameras", cameras_json(summary.cameras)}};
   object["vehicle"] = vehicle_json(sources_of(summary.vehicles));
-  if (summary.ate_median_m && summary.ate_p95_m)
-    object["truth"] = {{"ate_median_m", *summary.ate_median_m}, {"ate_p95_m", *summary.ate_p95_m}};
+  add_truth(summary, object);
   if (summary.rows)
     object["rows"] = {{"used", summary.rows->rows},
                       {"spaces", summary.rows->spaces},

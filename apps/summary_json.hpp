@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <vector>
 
 #include "base/error.hpp"
@@ -12,5 +13,7 @@ namespace roadbook {
 
 [[nodiscard]] nlohmann::ordered_json to_json(const MapSummary& summary);
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Problem>& problems);
+/// Null where there is none.
+[[nodiscard]] nlohmann::ordered_json to_json(const std::optional<SessionOffset>& offset);
 
 }  // namespace roadbook

@@ -10,6 +10,7 @@
 #include "apps/report/quality_section.hpp"
 #include "apps/report/speed_section.hpp"
 #include "apps/report/svg_plot.hpp"
+#include "apps/summaries/offset_text.hpp"
 #include "base/format.hpp"
 #include "mapping/store/map_file_names.hpp"
 
@@ -43,6 +44,9 @@ std::string headline(const ReportData& data) {
                  "error against truth, median" +
                      (map.sessions.size() > 1 ? ", session " + std::to_string(truth.session + 1)
                                               : std::string()));
+  if (data.truth.together && map.sessions.size() > 1)
+    html += tile(fixed(100.0 * data.truth.together->median_m, 1) + " cm",
+                 "error against truth, median, all sessions together");
   if (data.network)
     html += tile(std::to_string(data.network->lanes.size()) + " / " +
                      std::to_string(data.network->intersections.size()),
@@ -110,11 +114,21 @@ std::string sessions(const ReportData& data) {
                     fixed(100.0 * session.scale_sigma, 2),
                     session.wheels ? fixed(session.wheel_scale, 4) : "no wheels",
                     has ? fixed(100.0 * truth->error.median_m, 1) : "-",
-                    has ? fixed(100.0 * truth->error.p95_m, 1) : "-"});
+                    has ? fixed(100.0 * truth->error.p95_m, 1) : "-",
+                    has ? offset_text(truth->offset) : "-"});
   }
-  std::string html = html_table({"session", "cameras", "seconds", "scale from", "scale sigma [%]",
-                                 "wheel scale", "error median [cm]", "error 95 % [cm]"},
-                                rows);
+  std::string html =
+      html_table({"session", "cameras", "seconds", "scale from", "scale sigma [%]", "wheel scale",
+                  "error median [cm]", "error 95 % [cm]", "off the other sessions"},
+                 rows);
+  if (data.map.sessions.size() > 1 && data.truth.together)
+    html += "<p>One alignment of all sessions with the truth leaves " +
+            fixed(100.0 * data.truth.together->median_m, 1) + " cm median, " +
+            fixed(100.0 * data.truth.together->p95_m, 1) +
+            " cm 95 %. The errors of each session hold after its own alignment; the last column "
+            "says how that differs from the common one.</p>";
+  else if (!data.truth.apart.empty())
+    html += "<p>The sessions are not compared together: " + escaped(data.truth.apart) + ".</p>";
   for (const std::string& line : data.truth.without_truth) html += "<p>" + escaped(line) + ".</p>";
   return html_section("Sessions", html);
 }

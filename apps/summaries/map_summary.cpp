@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/summaries/offset_text.hpp"
 #include "apps/summary_json.hpp"
 #include "apps/vehicle_option.hpp"
 #include "base/format.hpp"
@@ -33,6 +34,23 @@ void say_cameras(const Console& console, const MapSummary& summary) {
   }
 }
 
+// One line for all sessions and, of several, one for each.
+void say_truth(const Console& console, const MapSummary& summary) {
+  if (summary.ate_median_m && summary.ate_p95_m)
+    console.say((summary.sessions > 1 ? "against the truth, all sessions together: "
+                                      : "against the drive's truth: ") +
+                fixed(*summary.ate_median_m, 3) + " m median, " + fixed(*summary.ate_p95_m, 3) +
+                " m 95 %");
+  else if (!summary.truth_apart.empty())
+    console.say("against the truth: sessions are not compared together, because " +
+                summary.truth_apart);
+  if (summary.sessions == 1) return;
+  for (const SessionTruth& s : summary.truth_sessions)
+    console.say(s.session + " alone: " + or_unknown(s.ate_median_m, 3) + " m median, " +
+                or_unknown(s.ate_p95_m, 3) +
+                " m 95 %; off the other sessions: " + offset_text(s.offset));
+}
+
 void say_summary(const Console& console, const MapSummary& summary) {
   console.say(std::to_string(summary.keyframes) + " keyframes, " +
               std::to_string(summary.landmarks) + " landmarks, " +
@@ -48,9 +66,7 @@ void say_summary(const Console& console, const MapSummary& summary) {
               (summary.scale_sigma ? ", +- " + fixed(100.0 * *summary.scale_sigma, 2) + " %"
                                    : std::string(", +- unknown")));
   say_vehicle(console, sources_of(summary.vehicles));
-  if (summary.ate_median_m && summary.ate_p95_m)
-    console.say("against the drive's truth: " + fixed(*summary.ate_median_m, 3) + " m median, " +
-                fixed(*summary.ate_p95_m, 3) + " m 95 %");
+  say_truth(console, summary);
   double seconds = 0.0;
   for (const StageTime& stage : summary.stages) seconds += stage.seconds;
   console.say("built in " + fixed(seconds, 1) + " s");
@@ -80,7 +96,7 @@ nlohmann::ordered_json result_of_last_run(const std::filesystem::path& map,
   const auto note = values.find("place.summary");
   if (note != values.end()) {
     const auto run = nlohmann::ordered_json::parse(note->second, nullptr, false);
-    for (const char* key : {"reprojection_px", "truth", "rows", "cameras"})
+    for (const char* key : {"reprojection_px", "truth", "truth_sessions", "rows", "cameras"})
       if (run.is_object() && run.contains(key)) result[key] = run[key];
   } else {
     result["reprojection_px"] = {{"median", nullptr}, {"rms", nullptr}};

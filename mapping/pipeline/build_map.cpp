@@ -20,7 +20,6 @@
 #include "mapping/pipeline/map_stages.hpp"
 #include "mapping/pipeline/odometry_checkpoint.hpp"
 #include "mapping/pipeline/short_segments.hpp"
-#include "mapping/pipeline/truth_error.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_lock.hpp"
@@ -154,6 +153,27 @@ void add_warnings_of(const std::vector<Drive>& drives, MapSummary& summary) {
   }
 }
 
+void add_truth_errors(const std::vector<Drive>& drives, const Map& map, MapSummary& summary) {
+  std::vector<DriveTruth> truths;
+  for (const Drive& drive : drives) truths.push_back(truth_of_drive(drive));
+  const TruthErrors errors = truth_errors(map, truths);
+  summary.truth_apart = errors.apart;
+  if (errors.together) {
+    summary.ate_median_m = errors.together->median_m;
+    summary.ate_p95_m = errors.together->p95_m;
+  }
+  if (errors.sessions.empty()) return;
+  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
+    SessionTruth& session = summary.truth_sessions.emplace_back();
+    session.session = map.sessions[s].name;
+    const SessionTruthError* found = errors.of_session(static_cast<int>(s));
+    if (found == nullptr) continue;
+    session.ate_median_m = found->error.median_m;
+    session.ate_p95_m = found->error.p95_m;
+    session.offset = found->offset;
+  }
+}
+
 void fill_summary(const std::vector<Drive>& drives,
                   const Map& map,
                   const Adjusted& adjusted,
@@ -170,10 +190,7 @@ void fill_summary(const std::vector<Drive>& drives,
                              1e-9;
   }
   add_warnings_of(drives, summary);
-  if (const auto error = truth_error(drives, map, summary.scale_source == ScaleSource::kFree)) {
-    summary.ate_median_m = error->median_m;
-    summary.ate_p95_m = error->p95_m;
-  }
+  add_truth_errors(drives, map, summary);
 }
 
 // Refuses drives whose parts do not hold together. The sensors that may be the cause become

@@ -11,6 +11,7 @@
 #include "mapping/map.hpp"
 #include "mapping/pipeline/map_options.hpp"
 #include "mapping/pipeline/parking_row_prior.hpp"
+#include "mapping/pipeline/truth_error.hpp"
 
 namespace roadbook {
 
@@ -25,6 +26,14 @@ struct SessionVehicle {
 
 /// The sources without the session names.
 [[nodiscard]] std::vector<VehicleSource> sources_of(const std::vector<SessionVehicle>& vehicles);
+
+/// Comparison of a session with the truth of its drive.
+struct SessionTruth {
+  std::string session;
+  std::optional<double> ate_median_m;  ///< after its own best alignment; empty without truth
+  std::optional<double> ate_p95_m;
+  std::optional<SessionOffset> offset;  ///< against all sessions; empty if they are not comparable
+};
 
 struct StageTime {
   std::string name;
@@ -43,13 +52,15 @@ struct MapSummary {
   std::optional<double> reprojection_rms_px;  ///< per coordinate, full-size image
   ScaleSource scale_source = ScaleSource::kFree;
   std::optional<double> scale_sigma;   ///< relative; empty where it is not known
-  std::optional<double> ate_median_m;  ///< against the drive's truth, SE(3) aligned
+  std::optional<double> ate_median_m;  ///< of all sessions together (TruthErrors::together)
   std::optional<double> ate_p95_m;
-  double drive_seconds = 0.0;            ///< recorded time, for the real-time factor
-  std::size_t components = 1;            ///< parts of the drives that nothing joins
-  std::vector<CameraFigures> cameras;    ///< of each drive in turn
-  std::optional<EqualRowsUsed> rows;     ///< empty without MapOptions::equal_rows
-  std::vector<SessionVehicle> vehicles;  ///< by session
+  std::vector<SessionTruth> truth_sessions;  ///< by session; empty if none has truth
+  std::string truth_apart;                   ///< why sessions with truth are not compared together
+  double drive_seconds = 0.0;                ///< recorded time, for the real-time factor
+  std::size_t components = 1;                ///< parts of the drives that nothing joins
+  std::vector<CameraFigures> cameras;        ///< of each drive in turn
+  std::optional<EqualRowsUsed> rows;         ///< empty without MapOptions::equal_rows
+  std::vector<SessionVehicle> vehicles;      ///< by session
   std::vector<StageTime> stages;
   std::string digest;
   /// Nothing was done, because the map was made from the same inputs. Only values that the map file

@@ -68,6 +68,23 @@ TEST(Simulate, GivesTheSameBytesOnAnyNumberOfThreads) {
   EXPECT_GT(first.size(), 24U);
 }
 
+// Visits with other parked cars, drivers and noise share the frame of their truth.
+TEST(Simulate, DrivesOfOnePlaceNameTheSameWorld) {
+  const auto world_of = [](const Scenario& scenario, std::uint64_t seed) {
+    SimulateOptions options = brief();
+    options.seed = seed;
+    const fs::path out = fresh("world");
+    (void)simulate(scenario, out, options);
+    return true_world(Drive::open(out));
+  };
+  EXPECT_EQ(world_of(tiny(0), 1), "zurich, size small, seed 11");
+  EXPECT_EQ(world_of(tiny(2), 5), "zurich, size small, seed 11");
+  Scenario other = tiny(0);
+  other.seed = 12;
+  EXPECT_EQ(world_of(other, 1), "zurich, size small, seed 12");
+  fs::remove_all(fresh("world"));
+}
+
 TEST(Simulate, ADriveReadsBackWithItsTruth) {
   const fs::path out = fresh("read");
   const SimulationSummary summary = simulate(tiny(1), out, brief());

@@ -124,6 +124,43 @@ TEST(MapOfFurtherDrives, IsTheOneOfAllDrives) {
       << fewer.err;
 }
 
+// Both visits are of one simulated place, so one alignment compares both with the truth.
+TEST(MapOfFurtherDrives, IsComparedWithTheTruthOfAllTogether) {
+  const test::ScratchFolder folder;
+  for (const int visit : {0, 1}) simulate_visit(visit, folder.path());
+  const auto json_of = [&](const std::string& arguments) {
+    const auto result = test::run_command("roadbook " + arguments + " -q --json", folder.path());
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  const auto built = json_of("map visit0 visit1 -m place.gpkg");
+  EXPECT_LT(built.at("truth").at("ate_median_m"), 0.05);
+  ASSERT_EQ(built.at("truth_sessions").size(), 2U);
+  for (const auto& session : built.at("truth_sessions")) {
+    EXPECT_LT(session.at("ate_median_m"), 0.05) << session;
+    EXPECT_LT(session.at("offset").at("shift_m"), 0.05) << session;
+    EXPECT_LT(std::abs(session.at("offset").at("heading_rad").get<double>()), 0.01) << session;
+  }
+  const auto again = json_of("map visit0 visit1 -m place.gpkg");
+  EXPECT_EQ(again.at("truth_sessions"), built.at("truth_sessions"));
+  const auto report = json_of("report -m place.gpkg -o report.html");
+  EXPECT_EQ(report.at("truth_together").at("ate_median_m"), built.at("truth").at("ate_median_m"));
+  for (std::size_t s = 0; s < 2; ++s)
+    EXPECT_EQ(report.at("truth").at(s).at("offset"), built.at("truth_sessions").at(s).at("offset"));
+  EXPECT_NE(test::read_text(folder.path() / "report.html").find("One alignment of all sessions"),
+            std::string::npos);
+
+  // Recorded references have no common world: each drive has its own error, all together none.
+  for (const std::string visit : {"visit0", "visit1"})
+    fs::remove_all(folder.path() / visit / "truth");
+  const auto recorded = json_of("map visit0 visit1 -m recorded.gpkg");
+  EXPECT_TRUE(recorded.at("truth").is_null()) << recorded.at("truth");
+  for (const auto& session : recorded.at("truth_sessions")) {
+    EXPECT_LT(session.at("ate_median_m"), 0.05) << session;
+    EXPECT_TRUE(session.at("offset").is_null()) << session;
+  }
+}
+
 // A finished map with an overhead image and with another program's table.
 class MapGivenAgain : public ::testing::Test {
  protected:
