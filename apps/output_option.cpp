@@ -6,10 +6,12 @@
 
 namespace roadbook {
 
-void refuse_to_replace(const std::filesystem::path& map, const std::filesystem::path& output) {
+void refuse_to_replace(const std::filesystem::path& map,
+                       const std::filesystem::path& output,
+                       const char* option) {
   std::error_code error;
   if (std::filesystem::equivalent(map, output, error))
-    throw InvalidOption("--output", output.string() + ", the map itself", "another file");
+    throw InvalidOption(option, output.string() + ", the map itself", "another file");
 }
 
 }  // namespace roadbook

@@ -3,8 +3,8 @@
 #include "apps/evaluate.hpp"
 #include "apps/evaluation/localisation/localisation_study.hpp"
 #include "apps/summaries/localise_summary.hpp"
-#include "base/error.hpp"
 #include "base/format.hpp"
+#include "base/text.hpp"
 #include "base/whole_file.hpp"
 
 namespace roadbook {
@@ -23,18 +23,20 @@ ordered_json starts_json(const StartTally& t) {
 }
 
 std::string starts_line(const StartTally& t) {
-  return std::to_string(t.starts) + " starts: " + std::to_string(t.right) + " right within 2 m, " +
-         std::to_string(t.late) + " later, " + std::to_string(t.lost) + " lost, " +
-         std::to_string(t.wrong) + " wrong; " + fixed(t.mean_try_ms, 0) + " ms of one core, " +
-         fixed(t.largest_try_ms, 0) + " ms at most";
+  return std::to_string(t.starts) + " starts: " + std::to_string(t.right) +
+         " right within 2.5 m, " + std::to_string(t.late) + " later, " + std::to_string(t.lost) +
+         " lost, " + std::to_string(t.wrong) + " wrong; " + fixed(t.mean_try_ms, 0) +
+         " ms of one core, " + fixed(t.largest_try_ms, 0) + " ms at most";
 }
 
 void run_localisation(Console& console, const EvaluateCommand& command) {
   LocalisationStudyOptions options;
-  for (const char* place : {"zurich", "stuttgart"})
-    if (std::string_view(place).starts_with(command.only)) options.places.emplace_back(place);
-  if (options.places.empty())
-    throw InvalidOption("--only", "'" + command.only + "'", "zurich or stuttgart");
+  options.places = {"zurich", "stuttgart"};
+  if (!command.only.empty()) {
+    options.places.clear();
+    for (const std::string_view place : split(command.only))
+      options.places.emplace_back(trim(place));
+  }
   options.seed = command.seed;
   options.num_threads = command.threads;
   if (command.quick) {
@@ -71,11 +73,11 @@ void run_localisation(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment localisation_experiment() {
-  return {
-      "localisation",
-      "later visits in the map of the first one, and random starts without a guess (--repeats: "
-      "starts a visit, --only: one place); drives and maps stay in the folder and are used again",
-      run_localisation};
+  return {"localisation",
+          "later visits in the map of the first one, and random starts without a guess (--repeats: "
+          "starts a visit, --only: built-in places, several with commas); drives and maps stay in "
+          "the folder and are used again",
+          run_localisation};
 }
 
 }  // namespace roadbook

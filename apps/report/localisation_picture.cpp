@@ -108,7 +108,7 @@ std::string localisation_picture(const LocaliseResult& result) {
     if (std::isfinite(variance)) sigma.points.emplace_back(way_m, 100.0 * std::sqrt(variance));
     if (i < result.off_m.size() && std::isfinite(result.off_m[i]))
       error.points.emplace_back(way_m, 100.0 * result.off_m[i]);
-    inliers.points.emplace_back(way_m, static_cast<double>(pose.views.size()));
+    inliers.points.emplace_back(way_m, pose.inliers);
   }
   const Panel above = plan(result);
   ChartAxes axes;

@@ -13,7 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+Json number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
 
 Json lost_json(const std::vector<LostSpan>& spans) {
   Json all = Json::array();
@@ -25,13 +27,13 @@ Json lost_json(const std::vector<LostSpan>& spans) {
 
 Json truth_json(const LocalisationTruth& truth) {
   return {{"frames", truth.frames},
-          {"median_m", truth.median_m},
-          {"p95_m", truth.p95_m},
-          {"max_m", truth.max_m},
-          {"along_median_m", truth.along_median_m},
-          {"across_median_m", truth.across_median_m},
-          {"heading_median_rad", truth.heading_median_rad},
-          {"heading_p95_rad", truth.heading_p95_rad},
+          {"median_m", number(truth.median_m)},
+          {"p95_m", number(truth.p95_m)},
+          {"max_m", number(truth.max_m)},
+          {"along_median_m", number(truth.along_median_m)},
+          {"across_median_m", number(truth.across_median_m)},
+          {"heading_median_rad", number(truth.heading_median_rad)},
+          {"heading_p95_rad", number(truth.heading_p95_rad)},
           {"recall_0_1_m", truth.recall_0_1_m},
           {"recall_0_2_m", truth.recall_0_2_m},
           {"recall_0_5_m", truth.recall_0_5_m},
@@ -66,7 +68,7 @@ std::vector<std::string> localisation_lines(const LocalisationFigures& f) {
     line += "; " + fixed(*f.inliers_median, 0) + " landmarks in the median frame";
   if (f.cpu_ms_median) line += ", " + fixed(*f.cpu_ms_median, 1) + " ms of one core";
   std::vector<std::string> lines{line};
-  if (f.truth)
+  if (f.truth && f.truth->frames > 0)
     lines.push_back("truth: median " + fixed(100.0 * f.truth->median_m, 1) + " cm, 95 % within " +
                     fixed(100.0 * f.truth->p95_m, 1) + " cm, largest " +
                     fixed(100.0 * f.truth->max_m, 1) + " cm; " + percent(f.truth->recall_0_1_m) +

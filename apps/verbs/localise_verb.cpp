@@ -35,7 +35,7 @@ Verb localise_verb() {
         options.add("--landmarks", landmarks.get(), "most landmarks searched for in a frame")
             .range = {50, 100000};
         options.add("--sessions", &command->sessions,
-                    "session of the map whose views count; default: all");
+                    "session of the map whose views count; may be repeated; default: all");
         options.add("--model", &command->model, "YAML file of known effects, which are corrected");
         add_vehicle_option(options, &command->vehicle);
         options
@@ -47,8 +47,8 @@ Verb localise_verb() {
       },
       [=](Console& console, const CommonOptions& common) {
         refuse_to_replace(command->map, command->poses);
-        for (const auto& file : {command->frames, *picture})
-          if (!file.empty()) refuse_to_replace(command->map, file);
+        if (!command->frames.empty()) refuse_to_replace(command->map, command->frames, "--frames");
+        if (!picture->empty()) refuse_to_replace(command->map, *picture, "--picture");
         command->options.tracking.num_threads = common.threads;
         command->options.start = start_pose(*start);
         command->options.localiser.may_relocalise = !*stay_lost;

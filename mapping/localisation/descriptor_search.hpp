@@ -39,8 +39,8 @@ class DescriptorSearch {
   DescriptorSearch(DescriptorSearch&&) noexcept;
   DescriptorSearch& operator=(DescriptorSearch&&) noexcept;
 
-  /// The `count` nearest of each query with at most `max_distance` bits, nearest first, of equal
-  /// ones that with the lower index; fewer where there are not so many.
+  /// The `count` nearest of each query with at most `max_distance` bits; fewer if the search finds
+  /// fewer. Nearest first, then by index.
   [[nodiscard]] std::vector<std::vector<NearDescriptor>> nearest(
       const std::vector<Descriptor>& queries, std::size_t count, int max_distance) const;
 

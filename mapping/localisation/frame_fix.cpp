@@ -74,11 +74,13 @@ std::optional<FrameFix> fix_frame(const Rig& half_rig,
                                   const FrameCorners& corners,
                                   const LandmarkIndex& index,
                                   const PredictedPose& predicted,
-                                  const FrameFixOptions& options) {
+                                  const FrameFixOptions& options,
+                                  std::vector<int>* in_view) {
   const std::vector<int> candidates = index.near(predicted.T_map_vehicle, options.near);
   std::optional<RigPosePrior> prior;
   if (options.use_prior)
-    prior = {predicted.T_map_vehicle, options.prior_share * inverse_of(predicted.covariance)};
+    prior = {predicted.T_map_vehicle,
+             options.prior_share * predicted.covariance.ldlt().solve(Matrix6d::Identity())};
   std::optional<LandmarkPose> pose;
   FoundLandmarks found;
   std::vector<LandmarkPixel> pixels;
@@ -87,6 +89,7 @@ std::optional<FrameFix> fix_frame(const Rig& half_rig,
   for (int round = 0; round < kRounds; ++round) {
     found = find_landmarks(half_rig, corners, index, candidates, from.T_map_vehicle,
                            from.covariance, options.search);
+    if (in_view != nullptr) *in_view = found.in_view;
     pixels = pixels_of(found.views, corners, index);
     pose = solve_landmark_pose(half_rig, pixels, from.T_map_vehicle, prior, options.pose);
     if (!pose) return std::nullopt;
@@ -95,18 +98,19 @@ std::optional<FrameFix> fix_frame(const Rig& half_rig,
   FrameFix fix;
   fix.T_map_vehicle = from.T_map_vehicle;
   fix.covariance = from.covariance;
-  fix.in_view = std::move(found.in_view);
   fix.matched = static_cast<int>(found.views.size());
   fix.chi2 = pose->chi2;
   fix.pull_found = pose->pull_found;
   fix.pull_expected = pose->pull_expected;
-  std::vector<char> seen(half_rig.cameras.size(), 0);
+  std::vector<int> seen(half_rig.cameras.size(), 0);
   for (std::size_t i = 0; i < found.views.size(); ++i) {
     if (!pose->inlier[i]) continue;
     fix.views.push_back(found.views[i]);
-    seen[at(found.views[i].camera)] = 1;
+    ++seen[at(found.views[i].camera)];
   }
-  fix.cameras = static_cast<int>(std::count(seen.begin(), seen.end(), 1));
+  constexpr int kFewest = 3;  // one or two may agree by chance
+  fix.cameras = static_cast<int>(
+      std::count_if(seen.begin(), seen.end(), [](int count) { return count >= kFewest; }));
   fix.azimuth_rad = azimuth_of_inliers(fix.views, index, fix.T_map_vehicle.inverse());
   return fix;
 }

@@ -38,9 +38,8 @@ struct FrameFix {
   Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
   Matrix6d covariance = Matrix6d::Identity();  ///< of the right perturbation, by landmarks alone
   std::vector<LandmarkView> views;             ///< inliers
-  std::vector<int> in_view;                    ///< landmarks that project into an image, ascending
   int matched = 0;                             ///< landmarks with a partner among the corners
-  int cameras = 0;                             ///< that have inliers
+  int cameras = 0;                             ///< that have at least three inliers
   double azimuth_rad = 0.0;  ///< that the inliers span around the vehicle, 0 to 2 pi
   double chi2 = 0.0;         ///< of the inliers; 2 per inlier expected
   double pull_found = 0.0;   ///< of LandmarkPose
@@ -50,15 +49,18 @@ struct FrameFix {
 };
 
 /// Searches the landmarks near the predicted pose, solves for the pose, and does both again from
-/// there. Empty if the pose is not determined; a result may still have too few inliers.
+/// there. Empty if the pose is not determined; a result may still have too few inliers. `in_view`
+/// receives the landmarks that project into an image, ascending, whether or not there is a pose.
 [[nodiscard]] std::optional<FrameFix> fix_frame(const Rig& half_rig,
                                                 const FrameCorners& corners,
                                                 const LandmarkIndex& index,
                                                 const PredictedPose& predicted,
-                                                const FrameFixOptions& options);
+                                                const FrameFixOptions& options,
+                                                std::vector<int>* in_view = nullptr);
 
-/// Whether enough landmarks agree, from enough directions: in two cameras, or over an angle of
-/// `min_azimuth_rad`, or over half of what a single camera sees.
+/// Whether enough landmarks agree, from enough directions: in two cameras (three landmarks in
+/// each), or over an angle of `min_azimuth_rad`, or, if the rig has one camera, over half of the
+/// angle that it sees.
 [[nodiscard]] bool has_enough(const FrameFix& fix, const Rig& rig, const FrameFixOptions& options);
 
 }  // namespace roadbook

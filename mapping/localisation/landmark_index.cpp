@@ -11,7 +11,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kCell = 5.0;           // [m] of the grid of keyframes
-constexpr double kFarthest = 50.0;      // [m] at which a keyframe counts as near at all
+constexpr double kFarthest = 40.0;      // [m] at which a keyframe counts as near at all
 constexpr double kUnknownSigma = 0.05;  // [m] of a landmark whose covariance the map does not know
 
 std::vector<char> chosen_sessions(const Map& map, const std::vector<std::string>& names) {
@@ -22,7 +22,7 @@ std::vector<char> chosen_sessions(const Map& map, const std::vector<std::string>
     if (found == map.sessions.end()) {
       std::string known;
       for (const Session& s : map.sessions) known += (known.empty() ? "" : ", ") + s.name;
-      throw InvalidOption("sessions", name, known);
+      throw InvalidOption("--sessions", name, known);
     }
     chosen[static_cast<std::size_t>(found - map.sessions.begin())] = 1;
   }

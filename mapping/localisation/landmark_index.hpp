@@ -51,7 +51,7 @@ class LandmarkIndex {
   /// Keyframes of the chosen sessions within `radius_m` of a place, ascending.
   [[nodiscard]] std::vector<int> keyframes_near(const Eigen::Vector3d& p_map,
                                                 double radius_m) const;
-  /// Keyframe of the chosen sessions nearest to a place, at most 50 m away; -1: none.
+  /// Keyframe of the chosen sessions nearest to a place, at most 40 m away; -1: none.
   [[nodiscard]] int nearest_keyframe(const Eigen::Vector3d& p_map) const;
 
   /// Landmarks that a vehicle at this pose may see, ascending: seen from keyframes near it, with

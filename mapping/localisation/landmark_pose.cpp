@@ -148,16 +148,40 @@ void judge(const Terms& terms,
     ++pose.inliers;
   }
   for (const auto& [key, group] : groups) pose.information += group.H;
+  const CauchyMoments moments = cauchy_moments(options.loss_sigma);
   const Matrix6d inverse =
       (pose.information + 1e-9 * Matrix6d::Identity()).ldlt().solve(Matrix6d::Identity());
   for (const auto& [key, group] : groups) {
     const Matrix6d share = group.H * inverse;
     pose.pull_found += group.g.dot(inverse * group.g);
-    pose.pull_expected += share.trace() - (share * share).trace();
+    pose.pull_expected += moments.squared_pull * (share.trace() - (share * share).trace());
   }
+  // Covariance of the minimum of a robust cost: A^-1 B A^-1 with the Hessian A and B = E(g g^T)
+  // (Huber 1967), both multiples of the information that the weights give.
+  pose.information *= moments.hessian * moments.hessian / moments.squared_pull;
 }
 
 }  // namespace
+
+CauchyMoments cauchy_moments(double width_sigma) {
+  // s = e^T e is distributed as exp(-s / 2) / 2. Midpoints up to where nothing is left.
+  constexpr int kSteps = 4000;
+  constexpr double kLargest = 60.0;
+  const double width2 = width_sigma * width_sigma;
+  double w_mean = 0.0;
+  double pull = 0.0;
+  double curve = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double step = kLargest / kSteps;
+    const double s = (i + 0.5) * step;
+    const double share = 0.5 * std::exp(-0.5 * s) * step;
+    const double w = 1.0 / (1.0 + s / width2);
+    w_mean += share * w;
+    pull += share * w * w * 0.5 * s;
+    curve += share * w * w * s / width2;  // the mean over directions of -2 rho'' e e^T
+  }
+  return {pull / w_mean, (w_mean - curve) / w_mean};
+}
 
 std::optional<LandmarkPose> solve_landmark_pose(const Rig& rig,
                                                 std::span<const LandmarkPixel> pixels,
@@ -168,7 +192,7 @@ std::optional<LandmarkPose> solve_landmark_pose(const Rig& rig,
   ceres::CauchyLoss loss(options.loss_sigma);
   auto problem_options = ceres_problem_options();
   problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  problem_options.disable_all_safety_checks = true;  // the number of residuals is large, they small
+  problem_options.disable_all_safety_checks = true;  // they cost more than the small problem
   ceres::Problem problem(problem_options);
   problem.AddParameterBlock(step.data(), 6);
   Terms terms;

@@ -30,7 +30,8 @@ struct LandmarkPoseOptions {
 
 struct LandmarkPose {
   Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
-  /// Of the right perturbation, by the landmarks alone, if the errors of all were independent.
+  /// Of the right perturbation, by the landmarks alone, if the errors were independent, normal and
+  /// of the stated sizes. The loss costs a part of it.
   Matrix6d information = Matrix6d::Zero();
   std::vector<std::uint8_t> inlier;  ///< by landmark
   int inliers = 0;
@@ -41,6 +42,14 @@ struct LandmarkPose {
   double pull_expected = 0.0;
 };
 
+/// What a Cauchy loss of this width makes of normal errors in two dimensions with unit variances:
+/// E(w^2 e^2) and E(Hessian), relative to E(w), with the weight w = 1 / (1 + e^T e / width^2).
+struct CauchyMoments {
+  double squared_pull = 1.0;
+  double hessian = 1.0;
+};
+[[nodiscard]] CauchyMoments cauchy_moments(double width_sigma);
+
 /// Minimises the reprojection errors of landmarks by Ceres [metric-semantic maps, section IV-C].
 /// An error is normalised by the covariance of the corner and of the landmark, seen from `initial`;
 /// Cauchy loss. `prior`: what else is known of the pose; empty: nothing. Derivatives: Ceres' dual
@@ -50,7 +59,7 @@ struct LandmarkPose {
 /// causes in common. With J, r and H of the normal equations and g = J^T r of a group,
 /// found = sum g^T H^-1 g, expected = sum tr((H_g - H_g H^-1 H_g) H^-1), as residuals are what the
 /// six parameters leave of the errors (Liang and Zeger 1986, with the leverage of Bell and
-/// McCaffrey 2002).
+/// McCaffrey 2002); for normal errors of the stated sizes, E(found) = expected with any loss.
 [[nodiscard]] std::optional<LandmarkPose> solve_landmark_pose(
     const Rig& rig,
     std::span<const LandmarkPixel> pixels,

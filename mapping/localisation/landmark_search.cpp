@@ -82,7 +82,7 @@ Choice choose(const Features& features,
     }
   });
   if (best.distance > options.max_hamming ||
-      (second != std::numeric_limits<int>::max() && best.distance > options.max_ratio * second))
+      (second != std::numeric_limits<int>::max() && best.distance >= options.max_ratio * second))
     return {};
   return best;
 }
@@ -115,7 +115,6 @@ FoundLandmarks find_landmarks(const Rig& half_rig,
   const Eigen::Isometry3d T_vehicle_map = T_map_vehicle.inverse();
   for (std::size_t c = 0; c < half_rig.cameras.size(); ++c) {
     const Features& features = corners.features()[c];
-    if (features.size() == 0) continue;
     const MountedCamera& mounted = half_rig.cameras[c];
     const View view{mounted, T_vehicle_map, mounted.T_vehicle_camera.linear().transpose(),
                     covariance, options};

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "vo/odometry_run.hpp"
+#include "vo/wheels/false_times.hpp"
 
 namespace roadbook {
 namespace {
@@ -16,8 +17,11 @@ constexpr std::size_t kAhead = 8;  // frames described while others are localise
 
 std::optional<WheelOdometry> wheels_of(const Drive& drive, const TrackDriveOptions& options) {
   if (!options.use_wheels || !drive.wheel_model()) return std::nullopt;
-  WheelOdometry wheels(*drive.wheel_model(), drive.wheel_readings());
+  const auto readings = drive.wheel_readings();
+  WheelOdometry wheels(*drive.wheel_model(), readings);
   if (wheels.empty()) return std::nullopt;
+  for (const auto& [begin, end] : impossible_times(*drive.wheel_model(), readings))
+    wheels.distrust(begin, end);
   return wheels;
 }
 
@@ -46,7 +50,7 @@ void confirm_tentative(std::vector<TimedFrame>& localised) {
     if (!before.tentative) return;
     before.tentative = false;
     before.status =
-        before.views.empty() ? LocalisationStatus::kPredicted : LocalisationStatus::kRelocalised;
+        before.inliers == 0 ? LocalisationStatus::kPredicted : LocalisationStatus::kRelocalised;
   }
 }
 
@@ -91,6 +95,9 @@ std::vector<TimedFrame> localise_drive(const Drive& drive,
       if (wheels && begin + i > 0)
         frame.wheels = wheels->between(localised.back().pose.t_ns, frame.t_ns);
       TimedFrame timed{localiser.add(std::move(frame))};
+      // Views and landmarks serve those who call the localiser; a long drive would pile them up.
+      timed.pose.views = {};
+      timed.pose.in_view = {};
       timed.cpu_ms = now.cpu_ms[i] + thread_cpu_ms() - start_ms;
       localised.push_back(std::move(timed));
       if (localiser.confirmed()) confirm_tentative(localised);

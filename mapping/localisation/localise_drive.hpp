@@ -13,7 +13,7 @@ namespace roadbook {
 
 enum class LocalisedFrames {
   kAll,       ///< every instant with images
-  kKeyframes  ///< those that `map` would make keyframes, by the wheels
+  kKeyframes  ///< at least a keyframe spacing apart, by the wheels; all without wheels
 };
 
 /// A pose that somebody gave.
@@ -31,7 +31,7 @@ struct LocaliseDriveOptions {
 };
 
 struct TimedFrame {
-  LocalisedFrame pose;
+  LocalisedFrame pose;  ///< without `views` and `in_view`
   double cpu_ms = 0.0;  ///< processor time of the frame: decoding, features, localisation
 };
 

@@ -4,17 +4,22 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/format.hpp"
 #include "base/index.hpp"
 #include "vo/planar_motion.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr double kStartReachM = 20.0;  // of the map around a given start
+constexpr double kStartReachM = 10.0;  // of the map around a given start
+constexpr double kStartWithinM = 5.0;  // of a given start
+constexpr double kStartSeconds = 2.0;  // for which a given start is tried
+constexpr double kFastest = 15.0;      // [m/s] of a car whose velocity is not known
 
 double seconds(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) * 1e-9;
@@ -47,16 +52,30 @@ struct VehicleTrack {
   // The pose of the last fix, and the velocity from the two last ones (per second).
   Eigen::Isometry3d T_map_fixed = Eigen::Isometry3d::Identity();
   std::int64_t fixed_ns = 0;
+  Matrix6d fixed_covariance = Matrix6d::Zero();
   std::optional<Vector6d> velocity;
-  Matrix6d random = Matrix6d::Zero();  // covariance without the wheels' lasting errors
+  Matrix6d random = Matrix6d::Zero();  // covariance without errors that last
   double since_fix_m = 0.0;
-  double since_fix_rad = 0.0;
+  // What predicted since the last fix; errors of either last that long.
+  double wheels_m = 0.0;
+  double wheels_rad = 0.0;
+  double blind_s = 0.0;
   int jumps = 0;  // frames in a row whose fix contradicts the prediction
+  std::int64_t doubted_until_ns = std::numeric_limits<std::int64_t>::min();
   // Of a pose without prediction, until it is confirmed.
   bool tentative = false;
-  double tried_m = 0.0;
+  double tried_m = 0.0;        // driven by the prediction
+  double tried_fixes_m = 0.0;  // driven from fix to fix
   int tried = 0;
   int fixed = 0;
+
+  // Wheels that two frames in a row contradict predict nothing for a second.
+  bool doubts_wheels(std::int64_t now_ns) {
+    constexpr int kContradicted = 2;
+    constexpr std::int64_t kLeftOutNs = 1'000'000'000;
+    if (jumps >= kContradicted) doubted_until_ns = std::max(doubted_until_ns, now_ns + kLeftOutNs);
+    return now_ns < doubted_until_ns;
+  }
 };
 
 }  // namespace
@@ -89,6 +108,7 @@ struct Localiser::State {
   std::optional<Relocaliser> relocaliser;  // made when it is needed for the first time
   std::optional<Eigen::Vector3d> start;    // where the vehicle is said to stand
   double start_heading_rad = 0.0;
+  std::optional<std::int64_t> start_tried_ns;  // when it was tried for the first time
   std::optional<VehicleTrack> track;
   std::optional<std::int64_t> last_try_ns;
   bool confirmed = false;
@@ -107,7 +127,7 @@ struct Localiser::State {
     return *relocaliser;
   }
 
-  void predict(const LocaliserFrame& frame);
+  void predict(const LocaliserFrame& frame, bool use_wheels);
   [[nodiscard]] bool is_lost() const;
   bool try_fix(const FrameCorners& corners, LocalisedFrame& result);
   bool fix_without_motion(const FrameCorners& corners);
@@ -119,42 +139,54 @@ struct Localiser::State {
 };
 
 // Moves the track to the time of the frame, by the wheels or with its velocity.
-void Localiser::State::predict(const LocaliserFrame& frame) {
+void Localiser::State::predict(const LocaliserFrame& frame, bool use_wheels) {
   VehicleTrack& t = *track;
   const double dt = seconds(t.t_ns, frame.t_ns);
   Eigen::Isometry3d T_old_new = Eigen::Isometry3d::Identity();
   Matrix6d noise = Matrix6d::Zero();
-  if (frame.wheels) {
+  if (use_wheels) {
     T_old_new = planar_transform(*frame.wheels);
     noise = planar_information(*frame.wheels).inverse();
+    t.wheels_m += T_old_new.translation().norm();
+    t.wheels_rad += so3_log(T_old_new.linear()).norm();
   } else {
-    constexpr double kFastest = 15.0;  // [m/s] of a car whose velocity is not known
+    constexpr double kPlace = 0.02;  // [m] of the velocity between two fixes, over one frame
+    constexpr double kTurn = 0.005;  // [rad]
     if (t.velocity) T_old_new = se3_exp(*t.velocity * dt);
-    const double place =
-        0.02 + (t.velocity ? 0.5 * options.acceleration_m_s2 * dt * dt : kFastest * dt);
-    const double turn = 0.005 + 0.5 * options.angular_acceleration_rad_s2 * dt * dt;
-    noise.diagonal() << Eigen::Vector3d::Constant(place * place),
-        Eigen::Vector3d::Constant(turn * turn);
+    noise.diagonal() << Eigen::Vector3d::Constant(kPlace * kPlace),
+        Eigen::Vector3d::Constant(kTurn * kTurn);
+    t.blind_s += dt;
+    if (frame.wheels && t.velocity) {
+      // The wheels were wrong since the last fix: the velocity leads on from there instead.
+      t.blind_s = seconds(t.fixed_ns, frame.t_ns);
+      t.pose.T_map_vehicle = t.T_map_fixed;
+      t.random = t.fixed_covariance;
+      T_old_new = se3_exp(*t.velocity * t.blind_s);
+      t.since_fix_m = t.wheels_m = t.wheels_rad = 0.0;
+    }
   }
   const double way = T_old_new.translation().norm();
   t.pose.T_map_vehicle = t.pose.T_map_vehicle * T_old_new;
   t.random = compose_covariance(t.random, T_old_new, noise);
   t.since_fix_m += way;
-  t.since_fix_rad += so3_log(T_old_new.linear()).norm();
+  // A wrong radius and a changed velocity do not average out.
+  const double sigma_turn = options.wheel_error * (t.wheels_rad + 0.05 * t.wheels_m) +
+                            0.5 * options.angular_acceleration_rad_s2 * t.blind_s * t.blind_s;
+  const double changed_m =
+      t.velocity ? 0.5 * options.acceleration_m_s2 * t.blind_s * t.blind_s : kFastest * t.blind_s;
+  const double sigma_along = options.wheel_error * t.wheels_m + changed_m;
+  const double sigma_across = 0.5 * sigma_turn * t.since_fix_m + changed_m;
   t.pose.covariance = t.random;
-  if (frame.wheels) {
-    const double sigma_way = options.wheel_error * t.since_fix_m;
-    const double sigma_turn = options.wheel_error * (t.since_fix_rad + 0.05 * t.since_fix_m);
-    t.pose.covariance(0, 0) += sigma_way * sigma_way;
-    t.pose.covariance(1, 1) += std::pow(0.5 * sigma_turn * t.since_fix_m, 2);
-    t.pose.covariance(5, 5) += sigma_turn * sigma_turn;
-  }
+  t.pose.covariance(0, 0) += sigma_along * sigma_along;
+  t.pose.covariance(1, 1) += sigma_across * sigma_across;
+  t.pose.covariance(5, 5) += sigma_turn * sigma_turn;
   t.tried_m += way;
   t.t_ns = frame.t_ns;
 }
 
 bool Localiser::State::is_lost() const {
   const Matrix6d& P = track->pose.covariance;
+  if (!P.allFinite()) return true;
   const double place = std::sqrt(std::max(P(0, 0), P(1, 1)));
   return place > options.lost_m || std::sqrt(P(5, 5)) > options.lost_rad ||
          track->since_fix_m > options.lost_after_m || track->jumps >= options.max_jumps;
@@ -163,18 +195,22 @@ bool Localiser::State::is_lost() const {
 // Takes the pose that the landmarks give, if there are enough and they do not contradict.
 bool Localiser::State::try_fix(const FrameCorners& corners, LocalisedFrame& result) {
   VehicleTrack& t = *track;
-  auto fix = fix_frame(rig, corners, index, t.pose, options.fix);
+  auto fix = fix_frame(rig, corners, index, t.pose, options.fix, &result.in_view);
+  result.landmarks = static_cast<int>(result.in_view.size());
   if (!fix) return false;
   result.matched = fix->matched;
-  result.in_view = std::move(fix->in_view);
-  if (!has_enough(*fix, rig, options.fix)) return false;
+  if (!has_enough(*fix, rig, options.fix)) {
+    t.jumps = 0;
+    return false;
+  }
   const Vector6d jump = se3_log(t.pose.T_map_vehicle.inverse() * fix->T_map_vehicle);
   const Matrix6d S = t.pose.covariance + fix->covariance;
-  if (jump.dot(S.ldlt().solve(jump)) > options.max_jump_chi2) {
+  if (!(jump.dot(S.ldlt().solve(jump)) <= options.max_jump_chi2)) {
     ++t.jumps;
     return false;
   }
   result.jump_m = jump.head<3>().norm();
+  result.inliers = fix->inliers();
   result.views = std::move(fix->views);
   result.cameras = fix->cameras;
   result.chi2 = fix->chi2;
@@ -201,11 +237,12 @@ void Localiser::State::take_fix(const Eigen::Isometry3d& T_map_vehicle,
   VehicleTrack& t = *track;
   const double dt = seconds(t.fixed_ns, t.t_ns);
   if (dt > 0.0 && dt < kLongest) t.velocity = se3_log(t.T_map_fixed.inverse() * T_map_vehicle) / dt;
+  t.tried_fixes_m += (T_map_vehicle.translation() - t.T_map_fixed.translation()).norm();
   t.T_map_fixed = T_map_vehicle;
   t.fixed_ns = t.t_ns;
   t.pose = {T_map_vehicle, covariance};
-  t.random = covariance;
-  t.since_fix_m = t.since_fix_rad = 0.0;
+  t.random = t.fixed_covariance = covariance;
+  t.since_fix_m = t.wheels_m = t.wheels_rad = t.blind_s = 0.0;
   t.jumps = 0;
 }
 
@@ -214,16 +251,19 @@ void Localiser::State::take_fix(const Eigen::Isometry3d& T_map_vehicle,
 bool Localiser::State::fix_without_motion(const FrameCorners& corners) {
   const auto found =
       places().find_near(rig, corners, track->T_map_fixed.translation(), options.fix);
-  if (!found) return false;
+  if (!found || found->ambiguous) return false;
+  const double moved =
+      (found->fix.T_map_vehicle.translation() - track->T_map_fixed.translation()).norm();
+  constexpr double kMarginM = 0.5;
+  if (moved > kFastest * seconds(track->fixed_ns, track->t_ns) + kMarginM) return false;
   take_fix(found->fix.T_map_vehicle, found->fix.covariance);
   return true;
 }
 
 bool Localiser::State::agrees_with_start(const Eigen::Isometry3d& T_map_vehicle) const {
-  constexpr double kWithinM = 5.0;
   constexpr double kWithinRad = 0.52;
   if (!start) return true;
-  return (T_map_vehicle.translation() - *start).head<2>().norm() < kWithinM &&
+  return (T_map_vehicle.translation() - *start).head<2>().norm() < kStartWithinM &&
          std::abs(wrap_angle(heading_of(T_map_vehicle) - start_heading_rad)) < kWithinRad;
 }
 
@@ -231,12 +271,18 @@ void Localiser::State::look_for_place(const LocaliserFrame& frame, const FrameCo
   if (!options.may_relocalise && !start) return;
   if (last_try_ns && seconds(*last_try_ns, frame.t_ns) < options.retry_s) return;
   last_try_ns = frame.t_ns;
+  if (start && !start_tried_ns) start_tried_ns = frame.t_ns;
+  // The car may have left the given start meanwhile, or never stood there.
+  if (start && seconds(*start_tried_ns, frame.t_ns) > kStartSeconds) {
+    start.reset();
+    if (!options.may_relocalise) return;
+  }
   const auto found = start ? places().find_near(rig, corners, *start, options.fix)
                            : places().find(rig, corners, options.fix);
   if (!found || found->ambiguous || !agrees_with_start(found->fix.T_map_vehicle)) return;
   VehicleTrack t;
   t.pose = {found->fix.T_map_vehicle, found->fix.covariance};
-  t.random = t.pose.covariance;
+  t.random = t.fixed_covariance = t.pose.covariance;
   t.T_map_fixed = t.pose.T_map_vehicle;
   t.t_ns = t.fixed_ns = frame.t_ns;
   t.tentative = !start;  // a start that somebody gave needs no driving to be believed
@@ -256,7 +302,7 @@ void Localiser::State::judge_tentative(bool has_fix) {
     track.reset();
     return;
   }
-  if (t.tried < kFewest || t.tried_m < options.confirm_m) return;
+  if (t.tried < kFewest || std::max(t.tried_m, t.tried_fixes_m) < options.confirm_m) return;
   t.tentative = false;
   confirmed = true;
 }
@@ -281,10 +327,11 @@ void Localiser::start_near(double x_m, double y_m, double heading_rad) {
     best = static_cast<int>(k);
   }
   if (best < 0)
-    throw InvalidOption("start", std::to_string(x_m) + "," + std::to_string(y_m),
-                        "a place within 20 m of the map's poses");
+    throw InvalidOption("--start", fixed(x_m, 2) + "," + fixed(y_m, 2),
+                        "a place within 10 m of the map's poses");
   s.start = Eigen::Vector3d(x_m, y_m, map.T_map_vehicle(best).translation().z());
   s.start_heading_rad = heading_rad;
+  s.start_tried_ns.reset();
   s.track.reset();
 }
 
@@ -295,15 +342,22 @@ LocalisedFrame Localiser::add(LocaliserFrame frame) {
   result.frame = frame.frame;
   result.t_ns = frame.t_ns;
   const FrameCorners corners(s.rig, std::move(frame.features));
-  const bool is_blind = s.track && !frame.wheels && !s.track->velocity;
-  if (s.track) s.predict(frame);
+  const bool use_wheels =
+      frame.wheels.has_value() && !(s.track && s.track->doubts_wheels(frame.t_ns));
+  const bool is_blind = s.track && !use_wheels && !s.track->velocity;
+  if (s.track) s.predict(frame, use_wheels);
   const bool is_placed = is_blind && s.fix_without_motion(corners);
-  if (s.track && s.is_lost()) s.track.reset();
+  if (s.track && s.is_lost()) {
+    // Frames of a pose that was never confirmed end with this one, before another may begin.
+    const bool was_tentative = s.track->tentative;
+    s.track.reset();
+    if (was_tentative) return result;
+  }
   const bool had_track = s.track.has_value();
   if (!s.track) s.look_for_place(frame, corners);
   if (!s.track) return result;
   const bool has_fix = s.try_fix(corners, result);
-  if (!had_track || is_placed || !frame.wheels)
+  if (!had_track || is_placed || !use_wheels)
     result.jump_m = std::numeric_limits<double>::quiet_NaN();
   s.judge_tentative(has_fix);
   if (!s.track) {  // the tentative pose was wrong
@@ -330,6 +384,8 @@ LocalisedFrame Localiser::add(LocaliserFrame frame) {
   result.since_fix_m = t.since_fix_m;
   return result;
 }
+
+void Localiser::prepare() { static_cast<void>(state_->places()); }
 
 bool Localiser::confirmed() const { return state_->confirmed; }
 

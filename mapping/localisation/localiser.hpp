@@ -40,7 +40,8 @@ struct LocaliserOptions {
   double retry_s = 0.08;         ///< between two tries to relocalise
   /// Errors of the wheels that do not average out, relative to way and turn since the last fix.
   double wheel_error = 0.02;
-  /// Without wheels the car keeps its velocity, but for these accelerations.
+  /// Without wheels the car is expected to keep its velocity; these accelerations, for all of the
+  /// time since the last fix, are the standard deviations of what it does instead.
   double acceleration_m_s2 = 4.0;
   double angular_acceleration_rad_s2 = 1.5;
 
@@ -71,8 +72,10 @@ struct LocalisedFrame {
   int keyframe = -1;                ///< nearest of the map; -1: lost
   std::vector<LandmarkView> views;  ///< inliers
   std::vector<int> in_view;         ///< landmarks that project into an image, ascending
-  int matched = 0;
-  int cameras = 0;
+  int landmarks = 0;                ///< number of `in_view`
+  int matched = 0;                  ///< of them with a partner among the corners
+  int inliers = 0;                  ///< number of `views`
+  int cameras = 0;                  ///< that have inliers
   double chi2 = std::numeric_limits<double>::quiet_NaN();  ///< of the inliers
   double since_fix_m = std::numeric_limits<double>::quiet_NaN();
   /// Distance between this pose and the last one moved by the wheels; NaN without either.
@@ -88,15 +91,18 @@ class Localiser {
   Localiser(Localiser&&) noexcept;
   Localiser& operator=(Localiser&&) noexcept;
 
-  /// The vehicle stands near this pose, within some metres and 30 degrees. Height and tilt are
-  /// those of the map's nearest keyframe. Throws InvalidOption if the map has none within 20 m.
+  /// The vehicle stands near this pose, within 5 m and 30 degrees. The start is tried for 2 s, then
+  /// it is forgotten. Throws InvalidOption if the map has no keyframe within 10 m.
   void start_near(double x_m, double y_m, double heading_rad);
+
+  /// Builds the search for places without a guess; otherwise the first frame that needs it does.
+  void prepare();
 
   /// Predicts, searches and solves for the pose of one frame.
   [[nodiscard]] LocalisedFrame add(LocaliserFrame frame);
 
-  /// True after the frame with which a pose without prediction was confirmed: the `tentative`
-  /// frames since the last frame that was not are right.
+  /// True directly after `add` has confirmed a pose that was found without a prediction. The
+  /// unbroken run of `tentative` frames before this one is then right.
   [[nodiscard]] bool confirmed() const;
 
  private:

@@ -42,7 +42,7 @@ void match_camera(const Features& features,
   for (std::size_t f = 0; f < features.size(); ++f) {
     const auto near = nearest_descriptor(features.descriptors[f], descriptors);
     if (near.index < 0 || near.distance > options.max_hamming ||
-        near.distance > options.max_ratio * near.second)
+        near.distance >= options.max_ratio * near.second)
       continue;
     Owner& owner = owners[at(near.index)];
     if (near.distance < owner.distance) owner = {static_cast<int>(f), near.distance};
@@ -151,9 +151,18 @@ std::optional<PlaceFound> Relocaliser::find(const Rig& half_rig,
                                             const FrameCorners& corners,
                                             const FrameFixOptions& fix_options) const {
   std::vector<PlaceFound> all;
-  for (const int keyframe : voted(corners))
+  for (const int keyframe : voted(corners)) {
+    // Around a place that was found, others give the same pose.
+    const Eigen::Vector3d p = index_.map().T_map_vehicle(keyframe).translation();
+    const bool is_found = std::any_of(all.begin(), all.end(), [&](const PlaceFound& one) {
+      const Eigen::Vector3d off = one.fix.T_map_vehicle.translation() - p;
+      return off.head<2>().norm() < options_.same_place_m &&
+             std::abs(off.z()) < options_.max_height_m;  // another storey is another place
+    });
+    if (is_found) continue;
     if (auto found = verify(half_rig, corners, keyframe, fix_options))
       all.push_back(std::move(*found));
+  }
   if (all.empty()) return std::nullopt;
   std::stable_sort(all.begin(), all.end(), [](const PlaceFound& a, const PlaceFound& b) {
     return a.fix.inliers() > b.fix.inliers();

@@ -14,17 +14,19 @@ struct RelocaliseOptions {
   std::size_t neighbours = 3;  ///< landmarks that a corner votes for
   int vote_hamming = 95;       ///< largest distance of descriptors of a vote, of 512 bits
   std::size_t places = 5;      ///< with the most votes, which are verified
-  double vote_share = 0.4;     ///< of the best place's votes, that another place needs
+  double vote_share = 0.4;     ///< places with fewer votes, of the best one's, are not verified
   double apart_m = 4.0;        ///< least distance of two places
+  double same_place_m = 1.0;   ///< around a found pose, other places are not verified
   int max_hamming = 105;       ///< of a match in a place, of 512 bits
   double max_ratio = 0.88;     ///< nearest over second-nearest descriptor distance
   double inlier_rad = 0.015;   ///< of the first pose, angle between ray and landmark
   int ransac_iterations = 300;
-  int min_inliers = 30;          ///< of guided matching
-  double min_share = 0.4;        ///< inliers of guided matching, of the matches by descriptor
-  double ambiguous_share = 0.7;  ///< of the best place's inliers, that a second place may not have
-  double max_tilt_rad = 0.26;    ///< of the car against the car that mapped the place
-  double max_height_m = 1.0;     ///< the same, of its height
+  int min_inliers = 30;    ///< of guided matching
+  double min_share = 0.4;  ///< inliers of guided matching, of the matches by descriptor
+  double ambiguous_share =
+      0.7;                     ///< with more inliers, of the best one's, a second place is a rival
+  double max_tilt_rad = 0.26;  ///< of the car against the car that mapped the place
+  double max_height_m = 1.0;   ///< the same, of its height
   std::uint64_t seed = 1;
 
   /// Throws InvalidOption.

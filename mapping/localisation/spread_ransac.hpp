@@ -18,8 +18,9 @@ struct SpreadRansacOptions {
 
 /// Pose of the rig by RANSAC with samples spread over the cameras (OpenGV,
 /// MultiNoncentralAbsolutePoseSacProblem: the generalised three-point solver). Samples from all
-/// observations together would end with the camera that has most of them. Observations of one
-/// camera, or of one that has four: Kneip's three-point solver. Empty if no pose is found.
+/// observations together would end with the camera that has most of them. Cameras with fewer than
+/// four observations are left out; if one camera remains, Kneip's three-point solver is used. The
+/// pose of the best sample is returned, however few agree with it. Empty if no sample gives one.
 /// Deterministic.
 [[nodiscard]] std::optional<Eigen::Isometry3d> find_spread_rig_pose(
     const Rig& rig,

@@ -13,8 +13,8 @@ namespace {
 // Smallest value that at least `share` of the values do not exceed; empty without values.
 std::optional<double> quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::nullopt;
-  const auto last = static_cast<double>(values.size()) - 1.0;
-  const auto place = static_cast<std::ptrdiff_t>(std::llround(share * last));
+  const double count = std::ceil(share * static_cast<double>(values.size()));
+  const auto place = static_cast<std::ptrdiff_t>(std::max(1.0, count)) - 1;
   std::nth_element(values.begin(), values.begin() + place, values.end());
   return values[static_cast<std::size_t>(place)];
 }
@@ -81,7 +81,7 @@ LocalisationFigures localisation_figures(const std::vector<TimedFrame>& frames) 
   for (const TimedFrame& frame : frames) {
     const LocalisedFrame& pose = frame.pose;
     cpu_ms.push_back(frame.cpu_ms);
-    if (has_fix(frame)) inliers.push_back(static_cast<double>(pose.views.size()));
+    if (has_fix(frame)) inliers.push_back(pose.inliers);
     if (has_fix(frame)) ++figures.localised;
     if (pose.status == LocalisationStatus::kRelocalised) ++figures.relocalised;
     if (pose.status == LocalisationStatus::kPredicted) ++figures.predicted;
@@ -127,9 +127,10 @@ std::optional<LocalisationTruth> localisation_truth(const std::vector<TimedFrame
     ++errors.with_truth;
     if (has_fix(frame)) add_error(frame.pose, T_map_world * *T_world_true, errors);
   }
-  if (errors.distance.empty()) return std::nullopt;
+  if (errors.with_truth == 0) return std::nullopt;
   LocalisationTruth result;
   result.frames = errors.distance.size();
+  if (result.frames == 0) return result;  // recalls of zero
   result.median_m = *quantile(errors.distance, 0.5);
   result.p95_m = *quantile(errors.distance, 0.95);
   result.max_m = *quantile(errors.distance, 1.0);

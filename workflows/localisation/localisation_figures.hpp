@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -17,16 +18,18 @@ struct LostSpan {
   std::size_t frames = 0;
 };
 
-/// Distance of localised poses from the truth, in the vehicle frame of the truth.
+/// Distance of localised poses from the truth, in the vehicle frame of the truth; NaN if no frame
+/// was localised.
 struct LocalisationTruth {
-  std::size_t frames = 0;  ///< localised ones with truth
-  double median_m = 0.0;   ///< of the distance in three dimensions
-  double p95_m = 0.0;
-  double max_m = 0.0;
-  double along_median_m = 0.0;   ///< of the absolute value, along the vehicle's x axis
-  double across_median_m = 0.0;  ///< the same along its y axis
-  double heading_median_rad = 0.0;
-  double heading_p95_rad = 0.0;
+  static constexpr double kNoFrame = std::numeric_limits<double>::quiet_NaN();
+  std::size_t frames = 0;      ///< localised ones with truth
+  double median_m = kNoFrame;  ///< of the distance in three dimensions
+  double p95_m = kNoFrame;
+  double max_m = kNoFrame;
+  double along_median_m = kNoFrame;   ///< of the absolute value, along the vehicle's x axis
+  double across_median_m = kNoFrame;  ///< the same along its y axis
+  double heading_median_rad = kNoFrame;
+  double heading_p95_rad = kNoFrame;
   double recall_0_1_m = 0.0;  ///< share of all frames with truth, localised within 0.1 m
   double recall_0_2_m = 0.0;
   double recall_0_5_m = 0.0;

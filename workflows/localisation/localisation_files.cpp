@@ -76,8 +76,8 @@ std::string localised_csv(const std::vector<TimedFrame>& frames, const Map& map)
     if (is_lost)
       text += ",,,,";
     else
-      text += "," + std::to_string(pose.in_view.size()) + "," + std::to_string(pose.matched) + "," +
-              std::to_string(pose.views.size()) + "," + std::to_string(pose.cameras);
+      text += "," + std::to_string(pose.landmarks) + "," + std::to_string(pose.matched) + "," +
+              std::to_string(pose.inliers) + "," + std::to_string(pose.cameras);
     text +=
         "," + value(pose.chi2, 2) + "," + value(pose.since_fix_m, 3) + "," + value(frame.cpu_ms, 2);
     for (const int i : {0, 1, 5}) text += "," + value(std::sqrt(pose.local_covariance(i, i)), 6);

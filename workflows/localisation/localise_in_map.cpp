@@ -30,6 +30,26 @@ void require_landmarks(const Map& map, const std::filesystem::path& file) {
                     "a map with landmarks (roadbook map)"});
 }
 
+// Whether the cameras have the same models, image sizes and places on the vehicle.
+bool sees_alike(const Rig& a, const Rig& b) {
+  constexpr double kApartM = 0.1;
+  constexpr double kApartRad = 0.1;
+  return std::equal(
+      a.cameras.begin(), a.cameras.end(), b.cameras.begin(), b.cameras.end(),
+      [&](const MountedCamera& one, const MountedCamera& other) {
+        const Eigen::Isometry3d T = one.T_vehicle_camera.inverse() * other.T_vehicle_camera;
+        return one.camera.model == other.camera.model && one.camera.width == other.camera.width &&
+               one.camera.height == other.camera.height && T.translation().norm() < kApartM &&
+               so3_log(T.linear()).norm() < kApartRad;
+      });
+}
+
+std::string cameras_text(const Rig& rig) {
+  const Camera& first = rig.cameras.front().camera;
+  return std::to_string(rig.cameras.size()) + " of " + std::to_string(first.width) + " x " +
+         std::to_string(first.height);
+}
+
 // Warnings about this drive in this map.
 std::vector<Problem> doubts_about(const Drive& drive, const Map& map, const std::string& digest) {
   std::vector<Problem> doubts;
@@ -39,14 +59,13 @@ std::vector<Problem> doubts_about(const Drive& drive, const Map& map, const std:
                         "session " + session.name + " of the map itself",
                         "a drive that the map does not have (the figures are too good)"});
   const bool has_equal_rig =
-      std::any_of(map.sessions.begin(), map.sessions.end(), [&](const Session& session) {
-        return session.rig.cameras.size() == drive.rig().cameras.size();
-      });
+      std::any_of(map.sessions.begin(), map.sessions.end(),
+                  [&](const Session& session) { return sees_alike(session.rig, drive.rig()); });
   if (!has_equal_rig)
     doubts.push_back({Severity::kWarning, drive.folder().string(), 0, "cameras",
-                      std::to_string(drive.rig().cameras.size()),
-                      std::to_string(map.sessions.front().rig.cameras.size()) +
-                          ", as the map (views from other places match less)"});
+                      cameras_text(drive.rig()),
+                      cameras_text(map.sessions.front().rig) +
+                          " at the same places, as the map (other views match less)"});
   return doubts;
 }
 

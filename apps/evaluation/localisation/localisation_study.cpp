@@ -1,5 +1,6 @@
 #include "apps/evaluation/localisation/localisation_study.hpp"
 
+#include "base/format.hpp"
 #include "base/messages.hpp"
 #include "mapping/pieces.hpp"
 #include "sim/simulate.hpp"
@@ -13,12 +14,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path drive_of(const fs::path& folder, const std::string& place, int visit) {
-  return folder / (place + "_visit" + std::to_string(visit));
+// Names hold the options: a folder may serve several studies.
+std::string name_of_place(const std::string& place, const LocalisationStudyOptions& options) {
+  return place + "_" + options.size + "_" + fixed(options.image_scale, 2) + "_seed" +
+         std::to_string(options.seed);
 }
 
-fs::path map_of(const fs::path& folder, const std::string& place) {
-  return folder / (place + ".gpkg");
+fs::path drive_of(const fs::path& folder,
+                  const std::string& place,
+                  int visit,
+                  const LocalisationStudyOptions& options) {
+  return folder / (name_of_place(place, options) + "_visit" + std::to_string(visit));
+}
+
+fs::path map_of(const fs::path& folder,
+                const std::string& place,
+                const LocalisationStudyOptions& options) {
+  return folder / (name_of_place(place, options) + ".gpkg");
 }
 
 void make_drive(const fs::path& drive,
@@ -67,16 +79,16 @@ LocalisationStudy localisation_study(const fs::path& folder,
   LocalisationStudy study;
   for (const std::string& place : options.places) {
     for (int visit = 0; visit <= options.visits; ++visit)
-      make_drive(drive_of(folder, place, visit), place, visit, options, progress);
-    make_map(map_of(folder, place), drive_of(folder, place, 0), options);
+      make_drive(drive_of(folder, place, visit, options), place, visit, options, progress);
+    make_map(map_of(folder, place, options), drive_of(folder, place, 0, options), options);
   }
   for (const std::string& place : options.places) {
-    const fs::path file = map_of(folder, place);
+    const fs::path file = map_of(folder, place, options);
     const Map map = load_joined_map(file);
     const LandmarkIndex index(map);
     for (int visit = 1; visit <= options.visits; ++visit) {
       LocaliseRequest request;
-      request.drive = drive_of(folder, place, visit);
+      request.drive = drive_of(folder, place, visit, options);
       request.map = file;
       request.frames = folder / (place + "_visit" + std::to_string(visit) + ".csv");
       request.options.tracking.num_threads = options.num_threads;
@@ -88,7 +100,8 @@ LocalisationStudy localisation_study(const fs::path& folder,
     for (const std::string& other : options.places)
       if (other != place)
         study.foreign.push_back(
-            {other, place, starts_of(drive_of(folder, other, 1), file, index, options, progress)});
+            {other, place,
+             starts_of(drive_of(folder, other, 1, options), file, index, options, progress)});
   }
   return study;
 }

@@ -13,14 +13,14 @@ namespace roadbook {
 
 // Where is the car? Asked at random frames of a drive, without a guess.
 
-/// What became of all starts.
+/// Outcomes of all starts.
 struct StartTally {
   std::size_t starts = 0;
-  std::size_t right = 0;        ///< found within 2 m of driving, off by at most 0.3 m and 2 degrees
-  std::size_t late = 0;         ///< found right, after more than 2 m
-  std::size_t wrong = 0;        ///< found elsewhere
-  std::size_t lost = 0;         ///< not found within 6 m
-  double largest_try_ms = 0.0;  ///< processor time of the dearest frame, features included
+  std::size_t right = 0;  ///< confirmed within 2.5 m of driving, off by at most 0.3 m and 2 degrees
+  std::size_t late = 0;   ///< the same, after more than 2.5 m
+  std::size_t wrong = 0;  ///< found elsewhere
+  std::size_t lost = 0;   ///< not found within 6 m
+  double largest_try_ms = 0.0;  ///< processor time of the slowest frame, features included
   double mean_try_ms = 0.0;     ///< of the frame that found the place
 };
 

@@ -179,11 +179,14 @@ TEST(Localiser, EqualDescriptorsAreLost) {
   for (Landmark& landmark : place.map.landmarks) landmark.descriptor = Descriptor{};
   for (Descriptor& d : place.descriptors) d = Descriptor{};
   const LandmarkIndex index(place.map);
-  Drive drive;
-  drive.frames = 2;
-  drive.corners.flipped_bits = 0;
-  drive.corners.reach_m = 6.0;
-  EXPECT_EQ(fixes(drive_through(place, index, drive)), 0U);
+  Random random(1, "equal");
+  test::SyntheticFrameOptions corners;
+  corners.flipped_bits = 0;
+  corners.reach_m = 6.0;
+  const FrameCorners frame(
+      place.half_rig,
+      test::synthetic_features(place, test::ring_pose(kRadius, 3.0), random, corners));
+  EXPECT_FALSE(Relocaliser(index, {}).find(place.half_rig, frame, {}));
 }
 
 TEST(Localiser, StandsFaultsOfADrive) {
@@ -230,6 +233,81 @@ TEST(Localiser, ACarThatStandsDoesNotBecomeSurer) {
   };
   EXPECT_GT(sigma(109), 0.6 * sigma(40));
   EXPECT_LT(sigma(109), 1.5 * sigma(40));
+}
+
+// Nothing shows that the car brakes: its pose runs ahead, and the stated uncertainty with it.
+TEST(Localiser, UncertaintyCoversACarThatBrakesUnseenWithoutWheels) {
+  const auto place = test::synthetic_place(9);
+  const LandmarkIndex index(place.map);
+  Drive drive;
+  drive.has_wheels = false;
+  drive.frames = 110;
+  static constexpr int kDark = 40;
+  static constexpr int kGoesOn = 66;
+  drive.way_m = [](int i) {  // stands at once
+    return kStep * (std::min(i, kDark) + std::max(0, i - kGoesOn));
+  };
+  drive.change = [](int i, std::vector<Features>& all) {
+    if (i >= kDark && i < kDark + 25)
+      for (Features& f : all) f = {};
+  };
+  const auto driven = drive_through(place, index, drive);
+  int predicted = 0;
+  for (const Driven& d : driven) {
+    if (d.pose.status != LocalisationStatus::kPredicted) continue;
+    ++predicted;
+    const Eigen::Vector2d off = d.error().head<2>();
+    const Eigen::Matrix2d C = d.pose.local_covariance.topLeftCorner<2, 2>();
+    EXPECT_LT(off.dot(C.ldlt().solve(off)), 9.2) << d.pose.frame;
+  }
+  EXPECT_GE(predicted, 3);
+  EXPECT_TRUE(driven.back().has_fix()) << "found again";
+  EXPECT_LT(driven.back().off_m(), 0.05);
+}
+
+// The wheels stand for 2 s while the car drives on.
+TEST(Localiser, WheelsThatAreStuckAreLeftOut) {
+  const auto place = test::synthetic_place(10);
+  const LandmarkIndex index(place.map);
+  Localiser localiser(index, place.half_rig, {});
+  Random random(1, "stuck");
+  int fixes = 0;
+  constexpr int kFrames = 110;
+  for (int i = 0; i < kFrames; ++i) {
+    const Eigen::Isometry3d T = test::ring_pose(kRadius, kStep * i);
+    LocaliserFrame frame;
+    frame.t_ns = i * 80'000'000LL;
+    frame.features = test::synthetic_features(place, T, random);
+    const bool is_stuck = i > 40 && i <= 65;
+    const Eigen::Isometry3d before = is_stuck ? T : test::ring_pose(kRadius, kStep * (i - 1));
+    if (i > 0) frame.wheels = test::synthetic_wheels(before, T, random);
+    const LocalisedFrame pose = localiser.add(std::move(frame));
+    if (pose.status != LocalisationStatus::kLocalised) continue;
+    ++fixes;
+    EXPECT_LT((pose.T_map_vehicle.translation() - T.translation()).norm(), 0.05) << i;
+  }
+  EXPECT_GT(fixes, kFrames - 13 - 12) << "all but the first 2 m and half of the time stuck";
+}
+
+TEST(Localiser, AWrongStartIsForgotten) {
+  const auto place = test::synthetic_place(11);
+  const LandmarkIndex index(place.map);
+  Localiser localiser(index, place.half_rig, {});
+  const Eigen::Isometry3d wrong = test::ring_pose(kRadius, 45.0);
+  localiser.start_near(wrong.translation().x(), wrong.translation().y(), heading_of(wrong));
+  Random random(1, "wrong start");
+  LocalisedFrame last;
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Isometry3d T = test::ring_pose(kRadius, kStep * i);
+    LocaliserFrame frame;
+    frame.t_ns = i * 80'000'000LL;
+    frame.features = test::synthetic_features(place, T, random);
+    if (i > 0)
+      frame.wheels = test::synthetic_wheels(test::ring_pose(kRadius, kStep * (i - 1)), T, random);
+    last = localiser.add(std::move(frame));
+    EXPECT_TRUE(last.status == LocalisationStatus::kLost || i > 25) << i;
+  }
+  EXPECT_EQ(last.status, LocalisationStatus::kLocalised);
 }
 
 TEST(Localiser, StartsWhereItIsTold) {
