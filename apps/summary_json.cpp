@@ -51,7 +51,7 @@ ordered_json cameras_json(const std::vector<CameraFigures>& cameras) {
 }
 
 // `truth` is null if the sessions have truth but no common alignment, and left out without truth.
-void add_truth(const MapSummary& summary, ordered_json& object) {
+void add_map_truth(const MapSummary& summary, ordered_json& object) {
   if (summary.truth_sessions.empty() && summary.truth_apart.empty()) return;
   object["truth"] = nullptr;
   if (summary.ate_median_m && summary.ate_p95_m)
@@ -91,7 +91,7 @@ ordered_json to_json(const MapSummary& summary) {
       {"pieces", summary.components},
       {"cameras", cameras_json(summary.cameras)}};
   object["vehicle"] = vehicle_json(sources_of(summary.vehicles));
-  add_truth(summary, object);
+  add_map_truth(summary, object);
   if (summary.rows)
     object["rows"] = {{"used", summary.rows->rows},
                       {"spaces", summary.rows->spaces},

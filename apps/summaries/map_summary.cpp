@@ -35,7 +35,7 @@ void say_cameras(const Console& console, const MapSummary& summary) {
 }
 
 // One line for all sessions and, of several, one for each.
-void say_truth(const Console& console, const MapSummary& summary) {
+void say_map_truth(const Console& console, const MapSummary& summary) {
   if (summary.ate_median_m && summary.ate_p95_m)
     console.say((summary.sessions > 1 ? "against the truth, all sessions together: "
                                       : "against the drive's truth: ") +
@@ -66,7 +66,7 @@ void say_summary(const Console& console, const MapSummary& summary) {
               (summary.scale_sigma ? ", +- " + fixed(100.0 * *summary.scale_sigma, 2) + " %"
                                    : std::string(", +- unknown")));
   say_vehicle(console, sources_of(summary.vehicles));
-  say_truth(console, summary);
+  say_map_truth(console, summary);
   double seconds = 0.0;
   for (const StageTime& stage : summary.stages) seconds += stage.seconds;
   console.say("built in " + fixed(seconds, 1) + " s");

@@ -7,10 +7,8 @@
 #include "apps/report/label_section.hpp"
 #include "apps/report/label_shift_section.hpp"
 #include "apps/report/page.hpp"
-#include "apps/summaries/offset_text.hpp"
-#include "apps/summary_json.hpp"
+#include "apps/summaries/report_truth.hpp"
 #include "apps/verb.hpp"
-#include "base/format.hpp"
 #include "base/whole_file.hpp"
 
 namespace roadbook {
@@ -36,33 +34,8 @@ nlohmann::ordered_json report_json(const ReportData& data,
                                    {"warnings", data.warnings.size()},
                                    {"digest", data.meta.digest}};
   if (data.labels) object["labels"] = label_report_json(*data.labels, rounds);
-  object["truth"] = nlohmann::ordered_json::array();
-  for (const TruthComparison& truth : data.truth.sessions)
-    object["truth"].push_back(
-        {{"session", data.map.sessions[static_cast<std::size_t>(truth.session)].name},
-         {"ate_median_m", truth.error.median_m},
-         {"ate_p95_m", truth.error.p95_m},
-         {"ate_rmse_m", truth.error.rmse_m},
-         {"ate_max_m", truth.error.max_m},
-         {"offset", to_json(truth.offset)}});
-  object["truth_together"] = nullptr;
-  if (const auto& all = data.truth.together)
-    object["truth_together"] = {{"ate_median_m", all->median_m},
-                                {"ate_p95_m", all->p95_m},
-                                {"ate_rmse_m", all->rmse_m},
-                                {"ate_max_m", all->max_m}};
+  add_truth(data, object);
   return object;
-}
-
-void say_truth(const ReportData& data, const Console& console) {
-  const bool several = data.map.sessions.size() > 1;
-  if (several && data.truth.together)
-    console.say("against truth, all sessions together: " + fixed(data.truth.together->median_m, 3) +
-                " m median, " + fixed(data.truth.together->p95_m, 3) + " m 95 %");
-  for (const TruthComparison& truth : data.truth.sessions)
-    console.say("against truth: " + fixed(truth.error.median_m, 3) + " m median, " +
-                fixed(truth.error.p95_m, 3) + " m 95 %" +
-                (several ? "; off the other sessions: " + offset_text(truth.offset) : ""));
 }
 
 void say_since_before(const LabelReport& labels, const Console& console) {
@@ -98,7 +71,7 @@ Verb report_verb() {
               for (EvaluationFigure& one : evaluation_figures(folder))
                 figures.push_back(std::move(one));
             write_whole_file(command->output, report_page(data, rounds, figures));
-            say_truth(data, console);
+            say_truth(console, data);
             if (data.labels && !command->before.empty()) say_since_before(*data.labels, console);
             if (data.labels && command->look_again)
               console.say("labels: the paint of " + std::to_string(data.labels->gone().size()) +
