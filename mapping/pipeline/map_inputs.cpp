@@ -11,7 +11,7 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kPipelineVersion = "4";  // changes with everything that changes results
+constexpr const char* kPipelineVersion = "5";  // changes with everything that changes results
 constexpr const char* kInputs = "inputs";      // in map_meta
 
 std::vector<std::string> digests_of(const std::vector<Drive>& drives) {

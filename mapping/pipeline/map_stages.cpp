@@ -7,6 +7,7 @@
 
 #include "mapping/landmark_descriptor.hpp"
 #include "mapping/optimisation/graph_relaxation.hpp"
+#include "mapping/pipeline/track_agreement.hpp"
 #include "mapping/travelled.hpp"
 
 namespace roadbook {
@@ -72,6 +73,15 @@ Map map_of_poses(const MappingInput& input, const Adjusted& adjusted) {
     map.keyframes.push_back(keyframe);
   }
   return map;
+}
+
+// Judges joined tracks by the noise that the last adjustment found.
+void split_wrong_joins(const MappingInput& input, const MapOptions& options, Adjusted& adjusted) {
+  AgreementOptions agreement;
+  agreement.sigma_px = sigma_of_median_px(adjusted.result.reprojection_median_px);
+  agreement.triangulation = options.triangulation;
+  agreement.num_threads = options.num_threads;
+  split_disagreeing_tracks(input, adjusted.T_map_vehicle, agreement, adjusted.tracks);
 }
 
 // The part of each pose of the problem. Poses behind those of keyframes are of rows of spaces, in
@@ -201,6 +211,7 @@ Adjusted adjust(const MappingInput& input,
     same.insert(same.end(), from_loops.begin(), from_loops.end());
     adjusted.tracks = join_tracks(input.odometry, same);
     triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
+    if (round > 0) split_wrong_joins(input, options, adjusted);
     adjusted.stage = make_bundle(input, adjusted.T_map_vehicle, adjusted.tracks, stage_options);
     // A looser tolerance changes poses by less than a tenth of their standard deviation and saves
     // most of the iterations (docs/results/speed.md).
@@ -225,6 +236,7 @@ Adjusted adjust(const MappingInput& input,
     if (adjusted.result.point_kept[p])
       adjusted.tracks[static_cast<std::size_t>(adjusted.stage.track_of_point[p])].p_map =
           adjusted.stage.problem.points[p].p_map;
+  split_wrong_joins(input, options, adjusted);
   return adjusted;
 }
 
