@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 
 #include "apps/evaluation/robustness/alike_places.hpp"
@@ -28,13 +29,19 @@ DriveFault fault_named(const std::string& name) {
   throw std::logic_error("no fault " + name);
 }
 
-// A recorded drive without images: what the faults of wheels and calibrations need.
+// A recorded drive with tiny images: what the faults of wheels and calibrations need. The tests
+// share the clean drive, and each damages its own copy.
 class DamagedFiles : public testing::Test {
  protected:
-  void SetUp() override {
+  static void SetUpTestSuite() {
+    shared_ = std::make_unique<TemporaryFolder>();
     SimulateOptions options;
     options.max_duration_s = 12.0;
     simulate(load_scenario("zurich", {.size = "small", .image_scale = 0.1}), clean(), options);
+  }
+  static void TearDownTestSuite() { shared_.reset(); }
+
+  void SetUp() override {
     fs::copy(clean(), drive(), fs::copy_options::recursive | fs::copy_options::create_hard_links);
   }
 
@@ -43,13 +50,14 @@ class DamagedFiles : public testing::Test {
     return fault_named(name).plant(drive(), random);
   }
 
-  [[nodiscard]] fs::path clean() const { return folder_.path() / "clean"; }
+  [[nodiscard]] static fs::path clean() { return shared_->path() / "clean"; }
   [[nodiscard]] fs::path drive() const { return folder_.path() / "damaged"; }
   [[nodiscard]] static RecordedTable wheels(const fs::path& drive) {
     return RecordedTable(drive / "wheels0" / "data.csv");
   }
 
  private:
+  static inline std::unique_ptr<TemporaryFolder> shared_;
   TemporaryFolder folder_;
 };
 
