@@ -85,6 +85,7 @@ function(roadbook_runs_program)
   foreach(target ${ARGN})
     add_dependencies(${target} roadbook)
     target_compile_definitions(${target} PRIVATE ROADBOOK_PROGRAM="$<TARGET_FILE:roadbook>"
-                                                 ROADBOOK_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+                                                 ROADBOOK_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
+                                                 ROADBOOK_TEST_DRIVES="${CMAKE_BINARY_DIR}/test_drives")
   endforeach()
 endfunction()

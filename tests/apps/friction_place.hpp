@@ -11,6 +11,7 @@
 #include "exchange/layers/friction_layers.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "tests/apps/run_command.hpp"
+#include "tests/apps/shared_drives.hpp"
 
 namespace roadbook::test {
 
@@ -30,10 +31,10 @@ class FrictionPlace {
   }
 
   void simulate(const std::string& name, int seed) const {
-    const auto result =
-        run("roadbook simulate road --size small --image-scale 0.125 --max-duration-s 12 "
-            "--class-images -q --seed " +
-            std::to_string(seed) + " -o " + name);
+    const auto result = simulate_drive(
+        "road --size small --image-scale 0.125 --max-duration-s 12 --class-images --seed " +
+            std::to_string(seed),
+        path(name));
     EXPECT_EQ(result.status, 0) << result.err;
   }
 

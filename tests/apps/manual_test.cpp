@@ -10,6 +10,7 @@
 
 #include "mapping/store/map_file_sqlite.hpp"
 #include "tests/apps/run_command.hpp"
+#include "tests/apps/shared_drives.hpp"
 #include "tests/support/map_file_document.hpp"
 
 namespace roadbook {
@@ -127,7 +128,7 @@ TEST(Manual, EveryExampleWorksFromTheDriveToTheReport) {
   ASSERT_GE(commands.size(), 9U);
   std::ofstream(folder.path() / "spaces.geojson") << kSpaces;
   for (const std::string& command : commands) {
-    const auto result = test::run_command(command + " --json --quiet", folder.path());
+    const auto result = test::run_example(command, " --json --quiet", folder.path());
     ASSERT_EQ(result.status, 0) << command << "\n" << result.err;
     const auto object = nlohmann::json::parse(result.out, nullptr, false);
     ASSERT_TRUE(object.is_object()) << command << "\n" << result.out;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/apps/run_command.hpp"
+#include "tests/apps/shared_drives.hpp"
 
 namespace roadbook {
 namespace {
@@ -63,7 +64,7 @@ TEST(Tutorial, EveryCommandWorksInItsOrder) {
       make_recording(folder.path() / "monday", folder.path() / "recording");
     if (command.rfind("roadbook map mine ", 0) == 0)
       test::write_text(folder.path() / "mine" / "vehicle.yaml", vehicle.front());
-    const auto result = test::run_command(as_test(command) + " --quiet", folder.path());
+    const auto result = test::run_example(as_test(command), " --quiet", folder.path());
     ASSERT_EQ(result.status, 0) << command << "\n" << result.err;
     if (command.rfind("roadbook map mine ", 0) == 0) {
       EXPECT_NE(result.out.find("own vehicle: from vehicle.yaml"), std::string::npos) << result.out;

@@ -5,8 +5,8 @@
 
 #include "mapping/pieces.hpp"
 #include "mapping/store/map_file.hpp"
-#include "sim/simulate.hpp"
 #include "tests/apps/run_command.hpp"
+#include "tests/apps/shared_drives.hpp"
 #include "tests/workflows/recorded_messages.hpp"
 #include "workflows/map_drives.hpp"
 
@@ -20,9 +20,10 @@ class MapGates : public testing::Test {
  protected:
   // Simulates some seconds in a small place.
   [[nodiscard]] fs::path drive(const std::string& place, const std::string& name) const {
-    SimulateOptions options;
-    options.max_duration_s = 6.0;
-    (void)simulate(load_scenario(place, {"small", 0, 0.5}), folder_.path() / name, options);
+    const auto made =
+        test::simulate_drive(place + " --size small --max-duration-s 6 --image-scale 0.5 --visit 0",
+                             folder_.path() / name);
+    EXPECT_EQ(made.status, 0) << made.err;
     return folder_.path() / name;
   }
   [[nodiscard]] fs::path map() const { return folder_.path() / "place.gpkg"; }

@@ -10,6 +10,7 @@
 #include "semantics/labels/label_store.hpp"
 #include "tests/apps/label_server/lot.hpp"
 #include "tests/apps/run_command.hpp"
+#include "tests/apps/shared_drives.hpp"
 
 // An existing map contains a user's work. `map` names the content that it refuses to overwrite, and
 // leaves the map unchanged.
@@ -87,11 +88,10 @@ TEST_F(MapVerb, AMapWhoseOwnDrivesAreNotAtHandIsNotExtended) {
 
 void simulate_visit(int visit, const fs::path& folder) {
   const std::string number = std::to_string(visit);
-  ASSERT_EQ(test::run_command("roadbook simulate zurich --size small --visit " + number +
-                                  " --max-duration-s 6 --image-scale 0.5 -q -o visit" + number,
-                              folder)
-                .status,
-            0);
+  const auto made = test::simulate_drive(
+      "zurich --size small --max-duration-s 6 --image-scale 0.5 --visit " + number,
+      folder / ("visit" + number));
+  ASSERT_EQ(made.status, 0) << made.err;
 }
 
 std::string digest_of_map(const std::string& arguments, const fs::path& folder) {

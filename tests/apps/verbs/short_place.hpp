@@ -8,6 +8,7 @@
 
 #include "mapping/store/map_file.hpp"
 #include "tests/apps/run_command.hpp"
+#include "tests/apps/shared_drives.hpp"
 
 namespace roadbook::test {
 
@@ -16,10 +17,10 @@ struct Place {
   Place() {
     for (const char* name : {"a", "b", "c"}) {
       const std::string visit = std::to_string(name[0] - 'a');
-      make(
-          "simulate zurich --size small --max-duration-s 6 --image-scale 0.5 "
-          "--visit " +
-          visit + " -o " + name);
+      const auto drive = simulate_drive(
+          "zurich --size small --max-duration-s 6 --image-scale 0.5 --visit " + visit,
+          folder.path() / name);
+      EXPECT_EQ(drive.status, 0) << drive.err;
     }
     make("map a -m a.gpkg");
     std::filesystem::copy_file(folder.path() / "a.gpkg", folder.path() / "full.gpkg");
