@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// Two sessions side by side: each pose of either sees the landmark of its own number.
+// Two sessions side by side: each pose of either sees the landmark with the same number.
 Map two_sessions() {
   Map map;
   for (const char* name : {"monday", "tuesday"}) {
@@ -49,7 +49,7 @@ TEST(LandmarkIndex, FetchesWhatNearbyPosesSaw) {
   EXPECT_EQ(index.viewers(13), std::vector<int>{13});
 }
 
-// Behind the landmark nobody has seen it.
+// No session has seen the landmark from behind.
 TEST(LandmarkIndex, LeavesOutWhatWasSeenFromTheOtherSideOrFromFarAway) {
   const Map map = two_sessions();
   const LandmarkIndex index(map);
@@ -71,7 +71,7 @@ TEST(LandmarkIndex, ASessionCountsAlone) {
   EXPECT_THROW(LandmarkIndex(map, {"sunday"}), InvalidOption);
 }
 
-// The covariance of a landmark stands in the axes of its map frame.
+// The covariance of a landmark is stored in the axes of its map frame.
 TEST(LandmarkIndex, TurnsCovariancesIntoTheMap) {
   Map map = two_sessions();
   map.map_frames[0].T_map_frame = pose_from_planar(0.0, 0.0, 1.5707963267948966);

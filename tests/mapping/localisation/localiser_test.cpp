@@ -80,7 +80,7 @@ std::size_t fixes(const std::vector<Driven>& driven) {
       std::count_if(driven.begin(), driven.end(), [](const Driven& d) { return d.has_fix(); }));
 }
 
-// Covariances judged by the truth. Each drive has a map with errors of its own. The last frames of
+// Covariances judged by the truth. Each drive has another map with other errors. The last frames of
 // a drive count, when the localiser knows the noise of the place; frames of one drive see the same
 // landmarks, so each drive counts once in the bounds (3 standard errors).
 TEST(Localiser, CovariancesHoldOverManyDrives) {
@@ -244,7 +244,7 @@ TEST(Localiser, UncertaintyCoversACarThatBrakesUnseenWithoutWheels) {
   drive.frames = 110;
   static constexpr int kDark = 40;
   static constexpr int kGoesOn = 66;
-  drive.way_m = [](int i) {  // stands at once
+  drive.way_m = [](int i) {  // stops at once
     return kStep * (std::min(i, kDark) + std::max(0, i - kGoesOn));
   };
   drive.change = [](int i, std::vector<Features>& all) {
@@ -265,7 +265,7 @@ TEST(Localiser, UncertaintyCoversACarThatBrakesUnseenWithoutWheels) {
   EXPECT_LT(driven.back().off_m(), 0.05);
 }
 
-// The wheels stand for 2 s while the car drives on.
+// The wheels report no motion for 2 s while the car drives on.
 TEST(Localiser, WheelsThatAreStuckAreLeftOut) {
   const auto place = test::synthetic_place(10);
   const LandmarkIndex index(place.map);

@@ -124,7 +124,7 @@ struct SyntheticFrameOptions {
   double gone_share = 0.0;  ///< of the landmarks that are no longer there
 };
 
-/// Corners that the rig sees from a pose. A landmark is gone in all frames or in none.
+/// Corners that the rig sees from a pose. A removed landmark is missing in all frames.
 inline std::vector<Features> synthetic_features(const SyntheticPlace& place,
                                                 const Eigen::Isometry3d& T_world_vehicle,
                                                 Random& random,
