@@ -8,33 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "sim/scenario/scenario.hpp"
-#include "sim/simulate.hpp"
-#include "tests/pipeline/map_judge.hpp"
+#include "tests/pipeline/visits.hpp"
 
 // Landmarks that several sessions see must be as good as those of one session: a wrong match
 // between visits must not survive in the map.
 
 namespace roadbook {
 namespace {
-
-namespace fs = std::filesystem;
-
-// Three visits of the small car park, with other parked cars and other drivers.
-std::vector<fs::path> three_visits(const fs::path& folder) {
-  std::vector<fs::path> drives;
-  for (int visit = 0; visit < 3; ++visit) {
-    ScenarioOptions options;
-    options.size = "small";
-    options.visit = visit;
-    options.image_scale = 0.5;
-    drives.push_back(folder / ("visit" + std::to_string(visit)));
-    SimulateOptions drive;
-    drive.max_duration_s = 18.0;
-    simulate(load_scenario("zurich", options), drives.back(), drive);
-  }
-  return drives;
-}
 
 double quantile(std::vector<double> values, double q) {
   std::sort(values.begin(), values.end());
@@ -81,11 +61,12 @@ Residuals residuals_of(const Map& map) {
   return result;
 }
 
-TEST(JoinedSessions, AgreeOnTheirLandmarksAndWithTheTruth) {
-  const fs::path folder = test::fresh_folder("joined_sessions");
-  const auto drives = three_visits(folder);
-  const MapSummary summary = build_map(drives, folder / "place.gpkg", {});
-  const Residuals residuals = residuals_of(load_map(folder / "place.gpkg"));
+using test::Visits;
+
+TEST_F(Visits, AgreeOnTheirLandmarksAndWithTheTruth) {
+  const std::filesystem::path file = folder() / "together.gpkg";
+  const MapSummary summary = build_map(drives(), file, {});
+  const Residuals residuals = residuals_of(load_map(file));
   EXPECT_GT(residuals.joined, 300);
   EXPECT_LT(residuals.off, 0.01 * residuals.joined);
   const double joined_px = quantile(residuals.of_joined, 0.95);

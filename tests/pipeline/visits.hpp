@@ -1,0 +1,45 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/scenario/scenario.hpp"
+#include "sim/simulate.hpp"
+#include "tests/pipeline/map_judge.hpp"
+
+namespace roadbook::test {
+
+/// Three visits of the small car park, with other parked cars and other drivers, rendered once for
+/// all tests of the suite.
+class Visits : public ::testing::Test {
+ protected:
+  static const std::filesystem::path& folder() {
+    static const std::filesystem::path folder = fresh_folder("visits");
+    return folder;
+  }
+  static const std::vector<std::filesystem::path>& drives() {
+    static const std::vector<std::filesystem::path> drives = render();
+    return drives;
+  }
+
+ private:
+  static std::vector<std::filesystem::path> render() {
+    std::vector<std::filesystem::path> drives;
+    for (int visit = 0; visit < 3; ++visit) {
+      ScenarioOptions options;
+      options.size = "small";
+      options.visit = visit;
+      options.image_scale = 0.5;
+      drives.push_back(folder() / ("visit" + std::to_string(visit)));
+      SimulateOptions drive;
+      drive.max_duration_s = 18.0;
+      simulate(load_scenario("zurich", options), drives.back(), drive);
+    }
+    return drives;
+  }
+};
+
+}  // namespace roadbook::test
