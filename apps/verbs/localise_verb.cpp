@@ -5,6 +5,7 @@
 #include "apps/summaries/localise_summary.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
+#include "base/text.hpp"
 #include "base/whole_file.hpp"
 
 namespace roadbook {
@@ -16,6 +17,7 @@ Verb localise_verb() {
   auto every = std::make_shared<std::string>("all");
   auto stay_lost = std::make_shared<bool>(false);
   auto landmarks = std::make_shared<int>(3000);
+  auto sessions = std::make_shared<std::string>();
   return {
       "localise", "finds the poses of a drive in a map, which stays as it is",
       [=](Options& options) {
@@ -34,8 +36,8 @@ Verb localise_verb() {
                     "write poses by the motion alone to the trajectory too");
         options.add("--landmarks", landmarks.get(), "most landmarks searched for in a frame")
             .range = {50, 100000};
-        options.add("--sessions", &command->sessions,
-                    "session of the map whose views count; may be repeated; default: all");
+        options.add("--sessions", sessions.get(),
+                    "sessions of the map whose views count, A,B; default: all");
         options.add("--model", &command->model, "YAML file of known effects, which are corrected");
         add_vehicle_option(options, &command->vehicle);
         options
@@ -51,6 +53,9 @@ Verb localise_verb() {
         if (!picture->empty()) refuse_to_replace(command->map, *picture, "--picture");
         command->options.tracking.num_threads = common.threads;
         command->options.start = start_pose(*start);
+        if (!sessions->empty())
+          for (const std::string_view name : split(*sessions))
+            command->sessions.emplace_back(trim(name));
         command->options.localiser.may_relocalise = !*stay_lost;
         command->options.localiser.fix.near.max_landmarks = static_cast<std::size_t>(*landmarks);
         command->options.localiser.relocalise.descriptors.seed =
