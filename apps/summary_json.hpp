@@ -13,7 +13,7 @@ namespace roadbook {
 
 [[nodiscard]] nlohmann::ordered_json to_json(const MapSummary& summary);
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Problem>& problems);
-/// Null where there is none.
+/// Null without one.
 [[nodiscard]] nlohmann::ordered_json to_json(const std::optional<SessionOffset>& offset);
 
 }  // namespace roadbook

@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// Returns the offset of a session for people: "0.012 m, 0.03 deg", or "-" where there is none.
+/// Returns the offset of a session for people: "0.012 m, 0.03 deg", or "-" if it is unknown.
 [[nodiscard]] std::string offset_text(const std::optional<SessionOffset>& offset);
 
 }  // namespace roadbook

@@ -23,7 +23,7 @@ struct DescriptorSearchOptions {
   DescriptorSearchMethod method = DescriptorSearchMethod::kLsh;
   int tables = 8;          ///< of hash keys
   int key_bits = 18;       ///< of the 512 that form one key
-  int probe_level = 1;     ///< keys that differ in so many bits are visited too
+  int probe_level = 1;     ///< keys that differ in up to this number of bits are visited too
   std::uint64_t seed = 1;  ///< of the choice of bits
 
   /// Throws InvalidOption.

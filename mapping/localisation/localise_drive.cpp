@@ -95,7 +95,8 @@ std::vector<TimedFrame> localise_drive(const Drive& drive,
       if (wheels && begin + i > 0)
         frame.wheels = wheels->between(localised.back().pose.t_ns, frame.t_ns);
       TimedFrame timed{localiser.add(std::move(frame))};
-      // Views and landmarks serve those who call the localiser; a long drive would pile them up.
+      // Callers of `Localiser` get views and landmarks; those of a long drive would fill the
+      // memory.
       timed.pose.views = {};
       timed.pose.in_view = {};
       timed.cpu_ms = now.cpu_ms[i] + thread_cpu_ms() - start_ms;
@@ -104,7 +105,7 @@ std::vector<TimedFrame> localise_drive(const Drive& drive,
     }
     report(progress, "localise", begin + now.features.size(), frames.size());
   }
-  // What driving never confirmed stays lost.
+  // Poses that driving never confirmed become lost.
   for (TimedFrame& one : localised) {
     if (!one.pose.tentative && one.pose.status != LocalisationStatus::kLost) continue;
     LocalisedFrame lost;

@@ -16,7 +16,7 @@ enum class LocalisedFrames {
   kKeyframes  ///< at least a keyframe spacing apart, by the wheels; all without wheels
 };
 
-/// A pose that somebody gave.
+/// A start pose given by the user.
 struct StartPose {
   double x_m = 0.0;
   double y_m = 0.0;

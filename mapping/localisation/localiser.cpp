@@ -16,10 +16,11 @@
 namespace roadbook {
 namespace {
 
-constexpr double kStartReachM = 10.0;  // of the map around a given start
-constexpr double kStartWithinM = 5.0;  // of a given start
-constexpr double kStartSeconds = 2.0;  // for which a given start is tried
-constexpr double kFastest = 15.0;      // [m/s] of a car whose velocity is not known
+constexpr double kStartReachM = 10.0;               // of the map around a given start
+constexpr double kStartWithinM = 5.0;               // of a given start
+constexpr double kStartSeconds = 2.0;               // for which a given start is tried
+constexpr double kFastest = 40.0;                   // [m/s] of a car whose velocity is not known
+constexpr std::int64_t kLeftOutNs = 1'000'000'000;  // for which doubted wheels predict nothing
 
 double seconds(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) * 1e-9;
@@ -45,7 +46,7 @@ Matrix6d covariance_of_fix(const Matrix6d& predicted, const Matrix6d& fix) {
   return axes * variances.asDiagonal() * axes.transpose();
 }
 
-// A vehicle whose pose is known, or supposed.
+// A vehicle with a pose, confirmed or tentative.
 struct VehicleTrack {
   PredictedPose pose;
   std::int64_t t_ns = 0;
@@ -56,7 +57,7 @@ struct VehicleTrack {
   std::optional<Vector6d> velocity;
   Matrix6d random = Matrix6d::Zero();  // covariance without errors that last
   double since_fix_m = 0.0;
-  // What predicted since the last fix; errors of either last that long.
+  // Distance, turn and time since the last fix that the wheels and the velocity predicted.
   double wheels_m = 0.0;
   double wheels_rad = 0.0;
   double blind_s = 0.0;
@@ -72,7 +73,6 @@ struct VehicleTrack {
   // Wheels that two frames in a row contradict predict nothing for a second.
   bool doubts_wheels(std::int64_t now_ns) {
     constexpr int kContradicted = 2;
-    constexpr std::int64_t kLeftOutNs = 1'000'000'000;
     if (jumps >= kContradicted) doubted_until_ns = std::max(doubted_until_ns, now_ns + kLeftOutNs);
     return now_ns < doubted_until_ns;
   }
@@ -130,6 +130,9 @@ struct Localiser::State {
   void predict(const LocaliserFrame& frame, bool use_wheels);
   [[nodiscard]] bool is_lost() const;
   bool try_fix(const FrameCorners& corners, LocalisedFrame& result);
+  bool try_without_wheels(const LocaliserFrame& frame,
+                          const FrameCorners& corners,
+                          LocalisedFrame& result);
   bool fix_without_motion(const FrameCorners& corners);
   void learn_noise(const FrameFix& fix);
   void take_fix(const Eigen::Isometry3d& T_map_vehicle, const Matrix6d& covariance);
@@ -246,6 +249,28 @@ void Localiser::State::take_fix(const Eigen::Isometry3d& T_map_vehicle,
   t.jumps = 0;
 }
 
+// Where the prediction of the wheels gives no fix, wrong wheels may be the cause: the velocity of
+// the last fixes is tried instead. If it gives one, the wheels are left out for a second.
+bool Localiser::State::try_without_wheels(const LocaliserFrame& frame,
+                                          const FrameCorners& corners,
+                                          LocalisedFrame& result) {
+  constexpr double kLongest = 1.0;  // [s] for which a velocity says where the car is
+  const VehicleTrack by_wheels = *track;
+  if (seconds(by_wheels.fixed_ns, frame.t_ns) > kLongest) return false;
+  bool is_placed = false;
+  if (track->velocity)
+    predict(frame, false);
+  else
+    is_placed = fix_without_motion(corners);
+  if ((track->velocity || is_placed) && try_fix(corners, result)) {
+    track->doubted_until_ns = frame.t_ns + kLeftOutNs;
+    result.jump_m = std::numeric_limits<double>::quiet_NaN();
+    return true;
+  }
+  *track = by_wheels;
+  return false;
+}
+
 // Without wheels and without a velocity nothing predicts the pose: the place around the last one is
 // searched as if no pose were known.
 bool Localiser::State::fix_without_motion(const FrameCorners& corners) {
@@ -285,12 +310,12 @@ void Localiser::State::look_for_place(const LocaliserFrame& frame, const FrameCo
   t.random = t.fixed_covariance = t.pose.covariance;
   t.T_map_fixed = t.pose.T_map_vehicle;
   t.t_ns = t.fixed_ns = frame.t_ns;
-  t.tentative = !start;  // a start that somebody gave needs no driving to be believed
+  t.tentative = !start;  // a given start is accepted at once
   start.reset();
   track = t;
 }
 
-// A pose without prediction is believed when the car has driven and most frames had a fix.
+// A pose without prediction is accepted when the car has driven and most frames had a fix.
 void Localiser::State::judge_tentative(bool has_fix) {
   VehicleTrack& t = *track;
   if (!t.tentative) return;
@@ -356,7 +381,8 @@ LocalisedFrame Localiser::add(LocaliserFrame frame) {
   const bool had_track = s.track.has_value();
   if (!s.track) s.look_for_place(frame, corners);
   if (!s.track) return result;
-  const bool has_fix = s.try_fix(corners, result);
+  const bool has_fix =
+      s.try_fix(corners, result) || (use_wheels && s.try_without_wheels(frame, corners, result));
   if (!had_track || is_placed || !use_wheels)
     result.jump_m = std::numeric_limits<double>::quiet_NaN();
   s.judge_tentative(has_fix);

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <array>
 #include <fstream>
 #include <sstream>
 
 #include "base/messages.hpp"
+#include "tests/pipeline/malaga_pairs.hpp"
 #include "tests/pipeline/visits.hpp"
 #include "tests/support/real_data.hpp"
 #include "workflows/localisation/localisation_files.hpp"
@@ -79,23 +79,11 @@ TEST_F(Visits, AreLocalisedInTheMapOfTheFirstWithoutAGuess) {
   wrong.options.localiser.may_relocalise = false;
   NoMessages messages;
   const LocaliseResult lost = localise_in_map(wrong, messages);
-  ASSERT_TRUE(lost.refusal) << "nobody said where the drive begins";
+  ASSERT_TRUE(lost.refusal) << "without a start pose";
   EXPECT_EQ(lost.figures.localised, 0U);
   EXPECT_EQ(lost.figures.lost.size(), 1U);
   wrong.options.start = StartPose{0.5, -0.5, 0.1};
   EXPECT_EQ(localise_in_map(wrong, messages).figures.localised, f.frames);
-}
-
-// Frame of malaga07_a at the place of a frame of malaga07_b, between the pairs of its README.
-double frame_in_a(double frame_of_b) {
-  constexpr std::array<std::array<double, 2>, 5> kPairs{
-      {{1600, 0}, {1640, 36}, {1680, 76}, {1720, 124}, {1760, 172}}};
-  for (std::size_t i = 1; i < kPairs.size(); ++i)
-    if (frame_of_b <= kPairs[i][0])
-      return kPairs[i - 1][1] + (frame_of_b - kPairs[i - 1][0]) /
-                                    (kPairs[i][0] - kPairs[i - 1][0]) *
-                                    (kPairs[i][1] - kPairs[i - 1][1]);
-  return kPairs.back()[1];
 }
 
 // The frames of a drive for which `keep` is true, as a drive of its own that shares the images.
@@ -131,7 +119,8 @@ TEST(LocaliseRecorded, MalagaIsFoundWhereItsPairsAreAndNowhereElse) {
   for (const TimedFrame& frame : of_b.frames) {
     if (frame.pose.status == LocalisationStatus::kLost) continue;
     const int in_a = map.keyframes[static_cast<std::size_t>(frame.pose.keyframe)].drive_frame;
-    const double expected = frame_in_a(1600.0 + 2.0 * static_cast<double>(frame.pose.frame));
+    const double expected =
+        test::frame_of_malaga_a(1600.0 + 2.0 * static_cast<double>(frame.pose.frame));
     EXPECT_NEAR(2.0 * in_a, expected, 16.0) << frame.pose.frame;
     ++right;
   }

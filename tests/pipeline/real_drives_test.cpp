@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "semantics/overhead/overhead.hpp"
+#include "tests/pipeline/malaga_pairs.hpp"
 #include "tests/pipeline/map_judge.hpp"
 #include "tests/semantics/overhead_scene.hpp"
 #include "tests/support/real_data.hpp"
@@ -152,19 +152,6 @@ TEST(RealDrives, MalagaIsNotBurntByTheBalanceOfExposure) {
   EXPECT_NEAR(balanced.exposure.saturated_recorded, was.saturated, 1e-9);
 }
 
-// Returns the frame of malaga07_a (frame 2 i of the recording) at the place of a frame of
-// malaga07_b (frame 1600 + 2 i). Interpolates linearly between the pairs in the README.
-double frame_of_a(double frame_of_b) {
-  constexpr std::array<std::array<double, 2>, 5> kPairs{
-      {{1600, 0}, {1640, 36}, {1680, 76}, {1720, 124}, {1760, 172}}};
-  for (std::size_t i = 1; i < kPairs.size(); ++i)
-    if (frame_of_b <= kPairs[i][0])
-      return kPairs[i - 1][1] + (frame_of_b - kPairs[i - 1][0]) /
-                                    (kPairs[i][0] - kPairs[i - 1][0]) *
-                                    (kPairs[i][1] - kPairs[i - 1][1]);
-  return kPairs.back()[1];
-}
-
 // Both recordings in one folder, with the gap of a minute between them.
 std::filesystem::path joined_malaga(const std::filesystem::path& a,
                                     const std::filesystem::path& b,
@@ -202,7 +189,7 @@ TEST(RealDrives, MalagaGoesTheSameWayTwiceWithAGapBetween) {
     ASSERT_TRUE(from < frames_of_a && to >= frames_of_a) << "neither part meets itself";
     ++joined;
     // 16 frames are 0.8 s: the tolerance of the pairs plus the view ahead that both frames share.
-    EXPECT_NEAR(2.0 * from, frame_of_a(1600.0 + 2.0 * (to - frames_of_a)), 16.0)
+    EXPECT_NEAR(2.0 * from, test::frame_of_malaga_a(1600.0 + 2.0 * (to - frames_of_a)), 16.0)
         << loop.from << " -> " << loop.to;
   }
   EXPECT_GT(joined, 20);

@@ -31,7 +31,7 @@ void require_landmarks(const Map& map, const std::filesystem::path& file) {
 }
 
 // Whether the cameras have the same models, image sizes and places on the vehicle.
-bool sees_alike(const Rig& a, const Rig& b) {
+bool has_same_cameras(const Rig& a, const Rig& b) {
   constexpr double kApartM = 0.1;
   constexpr double kApartRad = 0.1;
   return std::equal(
@@ -58,9 +58,9 @@ std::vector<Problem> doubts_about(const Drive& drive, const Map& map, const std:
       doubts.push_back({Severity::kWarning, drive.folder().string(), 0, "drive",
                         "session " + session.name + " of the map itself",
                         "a drive that the map does not have (the figures are too good)"});
-  const bool has_equal_rig =
-      std::any_of(map.sessions.begin(), map.sessions.end(),
-                  [&](const Session& session) { return sees_alike(session.rig, drive.rig()); });
+  const bool has_equal_rig = std::any_of(
+      map.sessions.begin(), map.sessions.end(),
+      [&](const Session& session) { return has_same_cameras(session.rig, drive.rig()); });
   if (!has_equal_rig)
     doubts.push_back({Severity::kWarning, drive.folder().string(), 0, "cameras",
                       cameras_text(drive.rig()),

@@ -31,7 +31,7 @@ TruthComparison comparison_of(const Map& map,
 TruthComparisons compare_with_truth(const std::filesystem::path& map_file, const Map& map) {
   TruthComparisons result;
   std::vector<DriveTruth> truths(map.sessions.size());
-  std::vector<std::string> reasons(map.sessions.size(), "the drive is not at hand");
+  std::vector<std::string> reasons(map.sessions.size(), "the drive is not available");
   for (std::size_t i = 0; i < map.sessions.size(); ++i) {
     try {
       truths[i] = truth_of_drive(Drive::open(session_folder(map_file, map.sessions[i])));

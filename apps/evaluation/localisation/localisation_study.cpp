@@ -90,7 +90,7 @@ LocalisationStudy localisation_study(const fs::path& folder,
       LocaliseRequest request;
       request.drive = drive_of(folder, place, visit, options);
       request.map = file;
-      request.frames = folder / (place + "_visit" + std::to_string(visit) + ".csv");
+      request.frames = request.drive.string() + ".csv";
       request.options.tracking.num_threads = options.num_threads;
       NoMessages messages;
       VisitFigures figures{place, visit, localise_in_map(request, messages).figures, {}};

@@ -50,7 +50,7 @@ Outcome drive_from(const Start& start,
   Outcome outcome;
   std::size_t frame = start.frame;
   std::int64_t before_ns = drive.frame_stamp_ns(frame);
-  std::int64_t clock_ns = 0;  // time goes on, whatever the order of the frames
+  std::int64_t clock_ns = 0;  // ascends also when the frames are taken backwards
   for (;;) {
     const std::int64_t t_ns = drive.frame_stamp_ns(frame);
     std::vector<double> cpu_ms;

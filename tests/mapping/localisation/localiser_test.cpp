@@ -169,7 +169,7 @@ TEST(Localiser, AnotherPlaceIsLost) {
   for (const Driven& d : driven) EXPECT_EQ(d.pose.status, LocalisationStatus::kLost);
 }
 
-// 20,000 equal descriptors neither crash nor give a pose.
+// 20,000 equal descriptors give no pose, and no crash.
 TEST(Localiser, EqualDescriptorsAreLost) {
   test::SyntheticPlaceOptions options;
   options.point_count = 20000;
@@ -287,6 +287,32 @@ TEST(Localiser, WheelsThatAreStuckAreLeftOut) {
     EXPECT_LT((pose.T_map_vehicle.translation() - T.translation()).norm(), 0.05) << i;
   }
   EXPECT_GT(fixes, kFrames - 13 - 12) << "all but the first 2 m and half of the time stuck";
+}
+
+// One rear wheel counts nothing: the wheels predict a turn that leaves no landmark where it is
+// expected.
+TEST(Localiser, WheelsThatTurnTheCarAreLeftOut) {
+  const auto place = test::synthetic_place(12);
+  const LandmarkIndex index(place.map);
+  Localiser localiser(index, place.half_rig, {});
+  Random random(1, "turning wheels");
+  int fixes = 0;
+  constexpr int kFrames = 60;
+  for (int i = 0; i < kFrames; ++i) {
+    const Eigen::Isometry3d T = test::ring_pose(kRadius, kStep * i);
+    LocaliserFrame frame;
+    frame.t_ns = i * 80'000'000LL;
+    frame.features = test::synthetic_features(place, T, random);
+    if (i > 0) {
+      frame.wheels = test::synthetic_wheels(test::ring_pose(kRadius, kStep * (i - 1)), T, random);
+      frame.wheels->motion.z() -= 0.1;
+    }
+    const LocalisedFrame pose = localiser.add(std::move(frame));
+    if (pose.status != LocalisationStatus::kLocalised) continue;
+    ++fixes;
+    EXPECT_LT((pose.T_map_vehicle.translation() - T.translation()).norm(), 0.05) << i;
+  }
+  EXPECT_GT(fixes, kFrames - 20) << "all but the first 2 m";
 }
 
 TEST(Localiser, AWrongStartIsForgotten) {
