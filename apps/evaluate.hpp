@@ -43,6 +43,7 @@ Experiment rows_experiment();
 Experiment robustness_experiment();
 Experiment covariance_experiment();
 Experiment localisation_experiment();
+Experiment sessions_experiment();
 
 /// Returns all experiments. To add one, declare its function above and list it in
 /// apps/verbs/evaluate_verb.cpp.

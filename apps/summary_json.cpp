@@ -89,6 +89,7 @@ ordered_json to_json(const MapSummary& summary) {
        {{"source", scale_source_name(summary.scale_source)},
         {"sigma", number_or_null(summary.scale_sigma)}}},
       {"pieces", summary.components},
+      {"localised_share", number_or_null(summary.localised_share)},
       {"cameras", cameras_json(summary.cameras)}};
   object["vehicle"] = vehicle_json(sources_of(summary.vehicles));
   add_map_truth(summary, object);

@@ -39,6 +39,8 @@ struct Session {
   double scale_sigma = std::numeric_limits<double>::quiet_NaN();  ///< relative; NaN: unknown
   std::int64_t t_begin_ns = 0;
   std::int64_t t_end_ns = 0;
+  /// Of its keyframes, localised in the map that it extended; NaN: mapped without a map before it.
+  double localised_share = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A frame fixed in space for ever, one at each base-map pose as first estimated.
@@ -59,6 +61,8 @@ struct Keyframe {
   bool reversing = false;
   bool after_gap = false;  ///< the motion from the previous keyframe is not known from odometry
   int piece = 0;           ///< poses of different pieces have no common place: nothing joins them
+  /// Motion from the session's keyframe before by the wheels; empty: not known.
+  std::optional<PlanarMotion> wheels;
 };
 
 struct Landmark {
@@ -76,6 +80,23 @@ struct Observation {
   int camera = 0;
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  ///< full-resolution image
   float sigma_px = 1.0F;                            ///< full-resolution
+};
+
+/// A corner that no landmark explains yet; a later session may.
+struct LoneCorner {
+  int keyframe = 0;
+  int camera = 0;
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  ///< full-resolution image
+  Descriptor descriptor{};
+};
+
+/// What a session that came after a landmark saw of it.
+struct LandmarkSession {
+  int landmark = 0;
+  int session = 0;
+  int expected = 0;                     ///< localised keyframes in whose images it lay
+  int seen = 0;                         ///< of them, keyframes that saw it
+  std::optional<std::int64_t> last_ns;  ///< when it was seen for the last time
 };
 
 /// A verified or refused revisit.
@@ -97,6 +118,8 @@ struct Map {
   std::vector<Landmark> landmarks;
   std::vector<Observation> observations;
   std::vector<LoopEdge> loops;
+  std::vector<LoneCorner> corners;                 ///< ascending in keyframe and camera
+  std::vector<LandmarkSession> landmark_sessions;  ///< ascending in landmark, then session
 
   [[nodiscard]] Eigen::Isometry3d T_map_vehicle(int keyframe) const {
     const Keyframe& k = keyframes[static_cast<std::size_t>(keyframe)];

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "mapping/store/existing_map.hpp"
+#include "mapping/store/map_file.hpp"
 #include "workflows/session_drives.hpp"
 
 namespace roadbook {
@@ -60,6 +61,29 @@ std::vector<std::string> refuse_same_drives(const std::vector<std::filesystem::p
         refuse_drive(folder, "the same drive as " + drives[i].string(), "each drive once");
   }
   return digests;
+}
+
+FurtherDrives further_drives(const std::filesystem::path& map_file,
+                             const std::vector<std::filesystem::path>& given,
+                             const Messages& messages) {
+  FurtherDrives further;
+  const std::vector<std::string> digests = refuse_same_drives(given);
+  further.is_new = !std::filesystem::exists(map_file);
+  if (further.is_new) return further;
+  const std::vector<Session> sessions = load_sessions(map_file);
+  std::size_t done = std::min(digests.size(), sessions.size());
+  while (done > 0 && !ends_with(sessions, {digests.begin(),
+                                           digests.begin() + static_cast<std::ptrdiff_t>(done)}))
+    --done;
+  further.drives.assign(given.begin() + static_cast<std::ptrdiff_t>(done), given.end());
+  refuse_known(map_file, sessions, further.drives,
+               {digests.begin() + static_cast<std::ptrdiff_t>(done), digests.end()});
+  if (further.drives.empty()) return further;
+  const std::size_t count = further.drives.size();
+  messages.note("the map of " + std::to_string(sessions.size()) +
+                (sessions.size() == 1 ? " session" : " sessions") + " is extended by " +
+                std::to_string(count) + (count == 1 ? " drive" : " drives"));
+  return further;
 }
 
 std::vector<std::filesystem::path> with_drives_of_map(

@@ -11,6 +11,20 @@ namespace roadbook {
 /// Throws BadInput for a drive that is given twice, under whatever names. Returns the digests.
 std::vector<std::string> refuse_same_drives(const std::vector<std::filesystem::path>& drives);
 
+/// What a command with drives and a map that exists has to do.
+struct FurtherDrives {
+  bool is_new = false;                        ///< there is no map yet
+  std::vector<std::filesystem::path> drives;  ///< that extend the map, in this order
+};
+
+/// Returns the drives of `given` by which the map in `map_file` is to be extended. The first of
+/// `given` may be the last sessions of the map, or all of them: a command that was stopped goes on,
+/// and one that is done has nothing left. Throws BadInput if a drive is given twice, under whatever
+/// names, or is another session of the map; also if the map is damaged.
+[[nodiscard]] FurtherDrives further_drives(const std::filesystem::path& map_file,
+                                           const std::vector<std::filesystem::path>& given,
+                                           const Messages& messages);
+
 /// Returns the drives from which to build the map in `map_file`, so that the drives `given` become
 /// part of it.
 ///

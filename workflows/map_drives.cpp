@@ -2,6 +2,8 @@
 
 #include "drive/vehicle_yaml.hpp"
 #include "exchange/layers/friction_layers.hpp"
+#include "mapping/pipeline/map_inputs.hpp"
+#include "mapping/sessions/extend_map.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_lock.hpp"
 #include "semantics/labels/label_drives.hpp"
@@ -27,6 +29,52 @@ std::string digest_of_labels(const std::filesystem::path& map) {
   return found == digests.end() ? std::string() : found->second;
 }
 
+// Adds what further extensions report to what the first ones did.
+void add_summary(MapSummary next, MapSummary& summary) {
+  const auto put_before = [](auto& list, const auto& earlier) {
+    list.insert(list.begin(), earlier.begin(), earlier.end());
+  };
+  put_before(next.stages, summary.stages);
+  put_before(next.warnings, summary.warnings);
+  put_before(next.dropped, summary.dropped);
+  put_before(next.cameras, summary.cameras);
+  next.drive_seconds += summary.drive_seconds;
+  summary = std::move(next);
+}
+
+MapResult extended_by(const std::vector<std::filesystem::path>& drives,
+                      const MapRequest& request,
+                      const MapOptions& options,
+                      Messages& messages) {
+  MapResult result;
+  result.drives = drives;
+  for (const auto& drive : drives)
+    add_summary(extend_map(drive, request.map, options, messages.progress()), result.summary);
+  return result;
+}
+
+// A drive that the map was last extended by, with the same options, needs nothing.
+bool is_done(const std::filesystem::path& map,
+             const std::filesystem::path& drive,
+             const MapOptions& options) {
+  std::vector<Drive> drives;
+  drives.push_back(Drive::open(drive));
+  return is_extended_by(map, drives, options);
+}
+
+MapResult made_map(const MapRequest& request, const MapOptions& options, Messages& messages) {
+  if (options.replace) refuse_same_drives(request.drives);
+  if (!options.replace && !request.batch) {
+    const FurtherDrives further = further_drives(request.map, request.drives, messages);
+    if (!further.drives.empty()) return extended_by(further.drives, request, options, messages);
+    if (!further.is_new && is_done(request.map, request.drives.back(), options))
+      return extended_by({request.drives.back()}, request, options, messages);
+  }
+  const auto drives =
+      options.replace ? request.drives : with_drives_of_map(request.map, request.drives, messages);
+  return {build_map(drives, request.map, options, messages.progress()), {}, drives};
+}
+
 }  // namespace
 
 MapResult map_drives(const MapRequest& request, Messages& messages) {
@@ -34,6 +82,16 @@ MapResult map_drives(const MapRequest& request, Messages& messages) {
   MapOptions options = request.options;
   options.keep_tables = measured_tables();
   options.keep_tables_of_drives = learning_tables();
+  if (request.equal_rows) {
+    // Rows are one prior of all poses.
+    if (request.adjust && *request.adjust != SessionAdjust::kAll)
+      throw InvalidOption("--equal-rows", "--adjust near or none", "--adjust all");
+    options.adjust = SessionAdjust::kAll;
+  } else if (request.adjust) {
+    options.adjust = *request.adjust;
+  }
+  if (!options.session_name.empty() && request.drives.size() > 1)
+    throw InvalidOption("--as", options.session_name, "a name for one drive");
   if (request.equal_rows) options.rows_digest = digest_of_labels(request.map);
   options.check_what_goes = [&](const ExistingMap& m) { check_labels_stay(request.map, m); };
   std::optional<Problem> lost_places;
@@ -46,13 +104,10 @@ MapResult map_drives(const MapRequest& request, Messages& messages) {
     options.equal_rows = [&](const Map& map) { return space_rows(map, labels_there(request.map)); };
   if (!request.vehicle.empty()) options.vehicle = load_vehicle(request.vehicle);
   if (!request.model.empty()) options.model = read_effect_model(request.model);
-  if (options.replace) refuse_same_drives(request.drives);
-  const auto drives =
-      options.replace ? request.drives : with_drives_of_map(request.map, request.drives, messages);
-  MapResult result{build_map(drives, request.map, options, messages.progress()), {}, drives};
+  MapResult result = made_map(request, options, messages);
   if (result.summary.is_unchanged) return result;
   if (options.vehicle)
-    for (const auto& drive : drives) {
+    for (const auto& drive : result.drives) {
       const auto doubts = doubts_of_given_vehicle(request.vehicle, *options.vehicle, drive);
       result.summary.warnings.insert(result.summary.warnings.end(), doubts.begin(), doubts.end());
     }

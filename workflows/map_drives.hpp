@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "base/messages.hpp"
@@ -17,6 +18,10 @@ struct MapRequest {
   std::filesystem::path vehicle;  ///< YAML with measures of the vehicle; empty: measures of the
                                   ///< drives
   bool equal_rows = false;        ///< labelled rows of equal spaces straighten the map
+  /// An existing map is built again from the recordings of all its drives and the new ones, instead
+  /// of extended.
+  bool batch = false;
+  std::optional<SessionAdjust> adjust;  ///< empty: near, or all with `equal_rows`
   MapOptions options;
 };
 
@@ -27,9 +32,10 @@ struct MapResult {
   std::vector<std::filesystem::path> drives;  ///< of the map, in its order
 };
 
-/// Builds a map from drives, or extends an existing map with drives that it lacks. Keeps labels and
-/// the tables of measured and learned values. Reports through `messages` how it uses the drives of
-/// an existing map. Throws the exceptions of `build_map`.
+/// Builds a map from drives. If the map exists, it is extended by the drives that it lacks, one
+/// after another (`extend_map`); with `batch` it is built again from the recordings of all. Keeps
+/// labels and the tables of measured and learned values. Reports through `messages` how it uses an
+/// existing map. Throws the exceptions of `build_map` and `extend_map`.
 [[nodiscard]] MapResult map_drives(const MapRequest& request, Messages& messages);
 
 }  // namespace roadbook

@@ -56,6 +56,9 @@ void say_summary(const Console& console, const MapSummary& summary) {
               std::to_string(summary.landmarks) + " landmarks, " +
               std::to_string(summary.loops_accepted) + " loops accepted, " +
               std::to_string(summary.loops_rejected) + " rejected");
+  if (summary.localised_share)
+    console.say(fixed(100.0 * *summary.localised_share, 0) +
+                " % of the drive's keyframes localised in the map");
   console.say("reprojection error " + or_unknown(summary.reprojection_median_px, 2) +
               " px median, " + or_unknown(summary.reprojection_rms_px, 2) + " px rms");
   say_cameras(console, summary);

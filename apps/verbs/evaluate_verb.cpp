@@ -34,7 +34,7 @@ std::vector<Experiment> all_experiments() {
   return {spm_experiment(),         speeds_experiment(),     people_experiment(),
           labels_experiment(),      laps_experiment(),       rows_experiment(),
           diagnosis_experiment(),   robustness_experiment(), covariance_experiment(),
-          localisation_experiment()};
+          localisation_experiment(), sessions_experiment()};
 }
 
 Verb evaluate_verb() {

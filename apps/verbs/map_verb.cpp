@@ -7,9 +7,21 @@
 
 namespace roadbook {
 
+namespace {
+
+std::optional<SessionAdjust> session_adjust_from(const std::string& name) {
+  if (name == "near") return SessionAdjust::kNear;
+  if (name == "all") return SessionAdjust::kAll;
+  if (name == "none") return SessionAdjust::kNone;
+  return std::nullopt;
+}
+
+}  // namespace
+
 Verb map_verb() {
   auto command = std::make_shared<MapRequest>();
   auto solver = std::make_shared<std::string>("own");
+  auto adjust = std::make_shared<std::string>();
   return {
       "map", "builds a map from one drive or several",
       [=](Options& options) {
@@ -23,6 +35,11 @@ Verb map_verb() {
             "own", "ceres"};
         options.add("--apart", &command->options.gate.apart,
                     "keep parts that nothing joins as pieces of the map");
+        options.add("--batch", &command->batch,
+                    "build an existing map again from the recordings of all its drives");
+        options.add("--adjust", adjust.get(), "what moves when a drive extends a map").choices = {
+            "near", "all", "none"};
+        options.add("--as", &command->options.session_name, "name of the session");
         options.add("--replace", &command->options.replace,
                     "build a map of these drives alone, replacing an existing one");
         options.add("--seed", &command->options.seed, "seed of all random numbers");
@@ -30,6 +47,7 @@ Verb map_verb() {
       [=](Console& console, const CommonOptions& common) {
         command->options.num_threads = common.threads;
         if (*solver == "ceres") command->options.bundle.bundle.solver = LeastSquaresSolver::kCeres;
+        command->adjust = session_adjust_from(*adjust);
         const MapHold hold(command->map);  // until the map also has the summary of this run
         print_map(console, map_drives(*command, console), command->map);
         return ExitStatus::kDone;

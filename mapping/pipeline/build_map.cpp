@@ -1,11 +1,6 @@
 #include "mapping/pipeline/build_map.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <fstream>
 #include <iterator>
 #include <utility>
 
@@ -14,12 +9,13 @@
 #include "mapping/cameras/common_camera_errors.hpp"
 #include "mapping/pieces.hpp"
 #include "mapping/pipeline/checkpoint_blobs.hpp"
+#include "mapping/pipeline/drive_steps.hpp"
 #include "mapping/pipeline/map_gate.hpp"
 #include "mapping/pipeline/map_inputs.hpp"
 #include "mapping/pipeline/map_paths.hpp"
 #include "mapping/pipeline/map_stages.hpp"
-#include "mapping/pipeline/odometry_checkpoint.hpp"
 #include "mapping/pipeline/short_segments.hpp"
+#include "mapping/pipeline/stage_clock.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_lock.hpp"
@@ -27,56 +23,6 @@
 
 namespace roadbook {
 namespace {
-
-double peak_rss_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-
-// Runs a stage and notes its time.
-class StageClock {
- public:
-  explicit StageClock(std::vector<StageTime>& stages) : stages_(stages) {}
-  template <typename Work>
-  auto run(const std::string& name, const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
-    auto result = work();
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    stages_.push_back({name, taken.count(), peak_rss_mb()});
-    return result;
-  }
-
- private:
-  std::vector<StageTime>& stages_;
-};
-
-VoResult odometry_of(const Drive& drive,
-                     const OwnCar& car,
-                     std::size_t index,
-                     const MapOptions& options,
-                     MapFileBuilder& build,
-                     const Progress& progress) {
-  const std::string stage = "odometry" + std::to_string(index);
-  if (build.has(stage)) return load_odometry(stage, build);
-  TrackDriveOptions tracking = options.tracking;
-  tracking.num_threads = options.num_threads;
-  VoResult odometry = track_drive(drive, car.masks, tracking, progress);
-  if (static_cast<int>(odometry.keyframes.size()) < options.min_keyframes)
-    throw Refused("error: " + drive.folder().string() + ": keyframes: got " +
-                  std::to_string(odometry.keyframes.size()) + ", want at least " +
-                  std::to_string(options.min_keyframes) + " (does the car move?)");
-  save_odometry(odometry, stage, build);
-  return odometry;
-}
-
-void add_doubts(const Drive& drive, const VoResult& odometry, std::vector<Problem>& warnings) {
-  for (const SensorDoubt& doubt : odometry.doubts)
-    warnings.push_back(
-        {Severity::kWarning,
-         (doubt.sensor.empty() ? drive.folder() : drive.folder() / doubt.sensor).string(), 0,
-         "motion", doubt.got, doubt.want});
-}
 
 std::vector<LoopClosure> loops_of(const MappingInput& input,
                                   const MapOptions& options,
@@ -88,48 +34,6 @@ std::vector<LoopClosure> loops_of(const MappingInput& input,
   auto loops = find_loops(input, loop_options, progress);
   build.save("loops", {{"loops", loops_to_blob(loops)}});
   return loops;
-}
-
-Problem short_segments_warning(const Drive& drive, int keyframes) {
-  return {Severity::kWarning,
-          drive.folder().string(),
-          0,
-          "keyframes",
-          std::to_string(keyframes) + " between gaps, too few to be placed; they are left out",
-          "images without gaps"};
-}
-
-Session session_of(const Drive& drive,
-                   const OwnCar& car,
-                   const MapOptions& options,
-                   const std::filesystem::path& map) {
-  Session session;
-  session.name = drive.name();
-  session.drive_path = path_from_map(drive.folder(), map);
-  session.drive_digest = drive.digest();
-  session.rig = drive.rig();
-  session.wheels = drive.wheel_model();
-  // Also measures that give no body, because the width alone is useful.
-  session.vehicle =
-      options.vehicle ? *options.vehicle : drive.vehicle().value_or(VehicleMeasures{});
-  session.vehicle_source = car.source;
-  session.t_begin_ns = drive.frame_stamp_ns(0);
-  session.t_end_ns = drive.frame_stamp_ns(drive.frame_count() - 1);
-  return session;
-}
-
-void count_contents(const Map& map, MapSummary& summary) {
-  summary.keyframes = map.keyframes.size();
-  summary.landmarks = map.landmarks.size();
-  summary.sessions = map.sessions.size();
-  for (const auto& loop : map.loops)
-    (loop.accepted ? summary.loops_accepted : summary.loops_rejected) += 1;
-  summary.scale_source = map.sessions.front().scale_source;
-  if (map.sessions.front().scale_sigma > 0.0)
-    summary.scale_sigma = map.sessions.front().scale_sigma;
-  summary.components = static_cast<std::size_t>(piece_count(map));
-  for (const Session& session : map.sessions)
-    summary.vehicles.push_back({session.name, session.vehicle_source});
 }
 
 // Stores where the drives are now, if the map is right but for their paths on this machine.
@@ -146,51 +50,21 @@ void renew_drive_paths(const Map& map,
   update.commit();
 }
 
-void add_warnings_of(const std::vector<Drive>& drives, MapSummary& summary) {
-  for (const Drive& drive : drives) {
-    const auto warnings = drive.warnings();
-    summary.warnings.insert(summary.warnings.end(), warnings.begin(), warnings.end());
-  }
-}
-
-void add_truth_errors(const std::vector<Drive>& drives, const Map& map, MapSummary& summary) {
-  std::vector<DriveTruth> truths;
-  for (const Drive& drive : drives) truths.push_back(truth_of_drive(drive));
-  const TruthErrors errors = truth_errors(map, truths);
-  summary.truth_apart = errors.apart;
-  if (errors.together) {
-    summary.ate_median_m = errors.together->median_m;
-    summary.ate_p95_m = errors.together->p95_m;
-  }
-  if (errors.sessions.empty()) return;
-  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
-    SessionTruth& session = summary.truth_sessions.emplace_back();
-    session.session = map.sessions[s].name;
-    const SessionTruthError* found = errors.of_session(static_cast<int>(s));
-    if (found == nullptr) continue;
-    session.ate_median_m = found->error.median_m;
-    session.ate_p95_m = found->error.p95_m;
-    session.offset = found->offset;
-  }
-}
-
 void fill_summary(const std::vector<Drive>& drives,
                   const Map& map,
                   const Adjusted& adjusted,
                   MapSummary& summary) {
   count_contents(map, summary);
-  const auto& inlier = adjusted.result.inlier;
-  if (std::find(inlier.begin(), inlier.end(), 1) != inlier.end()) {
-    summary.reprojection_median_px = kFullPerHalfPixel * adjusted.result.reprojection_median_px;
-    summary.reprojection_rms_px = kFullPerHalfPixel * adjusted.result.reprojection_rms_px;
-  }
+  add_reprojection(adjusted.result, summary);
   for (const auto& drive : drives) {
     summary.drive_seconds += static_cast<double>(drive.frame_stamp_ns(drive.frame_count() - 1) -
                                                  drive.frame_stamp_ns(0)) *
                              1e-9;
   }
   add_warnings_of(drives, summary);
-  add_truth_errors(drives, map, summary);
+  std::vector<DriveTruth> truths;
+  for (const Drive& drive : drives) truths.push_back(truth_of_drive(drive));
+  add_truth_errors(truths, map, summary);
 }
 
 // Refuses drives whose parts do not hold together. The sensors that may be the cause become
@@ -307,18 +181,7 @@ void build_from(const std::vector<Drive>& drives,
       assembled.keyframes[k].piece = relaxed.component[k];
     for (std::size_t i = 0; i < drives.size(); ++i) {
       Session session = session_of(drives[i], cars[i], options, map_path);
-      const int scale = adjusted.stage.scale_of_session[i];
-      if (scale >= 0) {
-        session.scale_source = ScaleSource::kWheels;
-        session.wheel_scale = adjusted.stage.problem.scales[static_cast<std::size_t>(scale)].value;
-        if (adjusted.covariance.usable)
-          session.wheel_scale_sigma =
-              adjusted.covariance.scale_sigmas[static_cast<std::size_t>(scale)];
-        session.scale_sigma = session.wheel_scale_sigma;
-      } else if (ground_sigma[i]) {
-        session.scale_source = ScaleSource::kCameraHeight;
-        session.scale_sigma = *ground_sigma[i];
-      }
+      set_scale(adjusted, i, ground_sigma[i], session);
       assembled.sessions.push_back(std::move(session));
     }
     return assembled;
@@ -343,12 +206,6 @@ void build_from(const std::vector<Drive>& drives,
 }
 
 }  // namespace
-
-std::vector<VehicleSource> sources_of(const std::vector<SessionVehicle>& vehicles) {
-  std::vector<VehicleSource> sources;
-  for (const SessionVehicle& vehicle : vehicles) sources.push_back(vehicle.source);
-  return sources;
-}
 
 MapSummary build_map(const std::vector<std::filesystem::path>& folders,
                      const std::filesystem::path& map_path,

@@ -11,8 +11,10 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kPipelineVersion = "5";  // changes with everything that changes results
-constexpr const char* kInputs = "inputs";      // in map_meta
+constexpr const char* kPipelineVersion = "6";    // changes with everything that changes results
+constexpr const char* kInputs = "inputs";        // in map_meta
+constexpr const char* kExtension = "extension";  // the inputs of the last extension
+constexpr const char* kExtensionBuild = "place.extension";  // the key of its checkpoints
 
 std::vector<std::string> digests_of(const std::vector<Drive>& drives) {
   std::vector<std::string> digests;
@@ -47,6 +49,14 @@ std::string map_inputs(const std::vector<Drive>& drives, const MapOptions& optio
   return digest.hex();
 }
 
+// What an extension depends on besides the map.
+std::string extension_inputs(const std::vector<Drive>& drives, const MapOptions& options) {
+  Sha256 digest;
+  digest.update(map_inputs(drives, options) + " adjust " +
+                std::to_string(static_cast<int>(options.adjust)) + " as " + options.session_name);
+  return digest.hex();
+}
+
 bool meta_has(const std::filesystem::path& file, const std::map<std::string, std::string>& wanted) {
   const auto values = load_meta(file).values;
   return std::all_of(wanted.begin(), wanted.end(), [&](const auto& entry) {
@@ -74,7 +84,8 @@ std::map<std::string, std::string> inputs_meta(const std::vector<Drive>& drives,
                                                const MapOptions& options) {
   return {{"options", options_text(options)},
           {"seed", std::to_string(options.seed)},
-          {kInputs, map_inputs(drives, options)}};
+          {kInputs, map_inputs(drives, options)},
+          {kExtension, ""}};
 }
 
 std::optional<ExistingMap> existing_map(const std::filesystem::path& file,
@@ -130,6 +141,41 @@ bool has_same_poses(const Map& before, const Map& after) {
       return false;
   }
   return true;
+}
+
+std::map<std::string, std::string> extension_meta(const std::filesystem::path& file,
+                                                  const std::vector<Drive>& drives,
+                                                  const MapOptions& options) {
+  const MapMeta before = load_meta(file);
+  const auto inputs = before.values.find(kInputs);
+  Sha256 digest;
+  digest.update((inputs == before.values.end() ? std::string() : inputs->second) + " " +
+                extension_inputs(drives, options));
+  auto meta = inputs_meta(drives, options);
+  meta[kInputs] = digest.hex();
+  meta[kExtension] = extension_inputs(drives, options);
+  meta[kExtensionBuild] = extension_checkpoint_key(before.digest, drives, options);
+  return meta;
+}
+
+bool is_extended_by(const std::filesystem::path& file,
+                    const std::vector<Drive>& drives,
+                    const MapOptions& options) {
+  return meta_has(file, {{kExtension, extension_inputs(drives, options)}});
+}
+
+std::string extension_checkpoint_key(const std::string& map_digest,
+                                     const std::vector<Drive>& drives,
+                                     const MapOptions& options) {
+  Sha256 digest;
+  digest.update("extension of " + map_digest + " " + extension_inputs(drives, options) + " " +
+                program_digest());
+  return digest.hex();
+}
+
+std::string extension_of_build(const MapMeta& meta) {
+  const auto found = meta.values.find(kExtensionBuild);
+  return found == meta.values.end() ? std::string() : found->second;
 }
 
 }  // namespace roadbook

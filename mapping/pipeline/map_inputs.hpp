@@ -9,6 +9,7 @@
 #include "drive/drive.hpp"
 #include "mapping/pipeline/map_options.hpp"
 #include "mapping/store/existing_map.hpp"
+#include "mapping/store/map_file.hpp"
 
 namespace roadbook {
 
@@ -47,5 +48,24 @@ namespace roadbook {
 /// True if `after` has exactly the poses and stamps of `before`, with the same measures and
 /// cameras: layers made from the poses then stay valid.
 [[nodiscard]] bool has_same_poses(const Map& before, const Map& after);
+
+/// Values of `map_meta` for the map in `file`, extended by the one drive in `drives`.
+[[nodiscard]] std::map<std::string, std::string> extension_meta(const std::filesystem::path& file,
+                                                                const std::vector<Drive>& drives,
+                                                                const MapOptions& options);
+
+/// Whether the map's last session came by extending it with the one drive in `drives` and these
+/// options.
+[[nodiscard]] bool is_extended_by(const std::filesystem::path& file,
+                                  const std::vector<Drive>& drives,
+                                  const MapOptions& options);
+
+/// Key of the checkpoints of an extension of the map with `map_digest`.
+[[nodiscard]] std::string extension_checkpoint_key(const std::string& map_digest,
+                                                   const std::vector<Drive>& drives,
+                                                   const MapOptions& options);
+
+/// The key of the checkpoints from which the map was extended last; empty if a build made it.
+[[nodiscard]] std::string extension_of_build(const MapMeta& meta);
 
 }  // namespace roadbook

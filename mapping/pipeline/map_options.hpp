@@ -31,6 +31,13 @@ struct MapGateOptions {
   bool apart = false;            ///< parts that nothing joins are kept as pieces
 };
 
+/// What moves when a session extends a map.
+enum class SessionAdjust {
+  kNear,  ///< the session, and the poses of the map that share most landmarks with it
+  kAll,   ///< everything
+  kNone,  ///< the session alone; the map stays as it is, bit for bit
+};
+
 /// How to build a map.
 struct MapOptions {
   TrackDriveOptions tracking;
@@ -47,6 +54,8 @@ struct MapOptions {
   std::optional<VehicleMeasures> vehicle;
   EffectSizes model;     ///< known imperfections; corrected in rig and readings before mapping
   bool replace = false;  ///< overwrite a map of other drives
+  SessionAdjust adjust = SessionAdjust::kNear;  ///< by `extend_map`
+  std::string session_name;  ///< of the drive, by `extend_map`; empty: that of its folder
   /// Tables of the existing map that the new map takes over (MapFinishOptions).
   std::vector<std::string> keep_tables;
   /// Tables taken over only if the new map begins with all drives of the existing map.

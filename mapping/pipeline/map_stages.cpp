@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mapping/landmark_descriptor.hpp"
+#include "mapping/lone_corners.hpp"
 #include "mapping/optimisation/graph_relaxation.hpp"
 #include "mapping/pipeline/track_agreement.hpp"
 #include "mapping/travelled.hpp"
@@ -70,18 +71,17 @@ Map map_of_poses(const MappingInput& input, const Adjusted& adjusted) {
     keyframe.travelled_m = travelled_m[k];
     keyframe.reversing = keyframes[k].reversing;
     keyframe.after_gap = keyframes[k].after_gap;
+    keyframe.wheels = keyframes[k].wheels;
     map.keyframes.push_back(keyframe);
   }
   return map;
 }
 
-// Judges joined tracks by the noise that the last adjustment found.
-void split_wrong_joins(const MappingInput& input, const MapOptions& options, Adjusted& adjusted) {
-  AgreementOptions agreement;
-  agreement.sigma_px = sigma_of_median_px(adjusted.result.reprojection_median_px);
-  agreement.triangulation = options.triangulation;
-  agreement.num_threads = options.num_threads;
-  split_disagreeing_tracks(input, adjusted.T_map_vehicle, agreement, adjusted.tracks);
+void split_wrong_joins_of(const MappingInput& input,
+                          const MapOptions& options,
+                          Adjusted& adjusted) {
+  split_wrong_joins(input, adjusted.T_map_vehicle, adjusted.result.reprojection_median_px, options,
+                    adjusted.tracks);
 }
 
 // The part of each pose of the problem. Poses behind those of keyframes are of rows of spaces, in
@@ -211,7 +211,7 @@ Adjusted adjust(const MappingInput& input,
     same.insert(same.end(), from_loops.begin(), from_loops.end());
     adjusted.tracks = join_tracks(input.odometry, same);
     triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
-    if (round > 0) split_wrong_joins(input, options, adjusted);
+    if (round > 0) split_wrong_joins_of(input, options, adjusted);
     adjusted.stage = make_bundle(input, adjusted.T_map_vehicle, adjusted.tracks, stage_options);
     // A looser tolerance changes poses by less than a tenth of their standard deviation and saves
     // most of the iterations (docs/results/speed.md).
@@ -236,7 +236,7 @@ Adjusted adjust(const MappingInput& input,
     if (adjusted.result.point_kept[p])
       adjusted.tracks[static_cast<std::size_t>(adjusted.stage.track_of_point[p])].p_map =
           adjusted.stage.problem.points[p].p_map;
-  split_wrong_joins(input, options, adjusted);
+  split_wrong_joins_of(input, options, adjusted);
   return adjusted;
 }
 
@@ -256,26 +256,32 @@ void add_covariances(const MappingInput& input,
                            options.bundle.feature_sigma_px, options.triangulation);
 }
 
-namespace {
+void split_wrong_joins(const MappingInput& input,
+                       const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                       double reprojection_median_px,
+                       const MapOptions& options,
+                       std::vector<JoinedTrack>& tracks) {
+  AgreementOptions agreement;
+  agreement.sigma_px = sigma_of_median_px(reprojection_median_px);
+  agreement.triangulation = options.triangulation;
+  agreement.num_threads = options.num_threads;
+  split_disagreeing_tracks(input, T_map_vehicle, agreement, tracks);
+}
 
-// The descriptor that is most like those of all views.
-Descriptor descriptor_of(const std::vector<VoKeyframe>& keyframes, const JoinedTrack& track) {
+Descriptor descriptor_of(const MappingInput& input, const JoinedTrack& track) {
   std::vector<Descriptor> seen;
   for (const KeyPointId& view : track.views)
-    seen.push_back(keyframes[static_cast<std::size_t>(view.keyframe)]
+    seen.push_back(input.odometry.keyframes[static_cast<std::size_t>(view.keyframe)]
                        .features[static_cast<std::size_t>(view.camera)]
                        .descriptors[static_cast<std::size_t>(view.feature)]);
   return seen[middle_descriptor(seen)];
 }
-
-}  // namespace
 
 Map map_of_stages(const MappingInput& input,
                   const std::vector<LoopClosure>& loops,
                   const Adjusted& adjusted,
                   const MapOptions& options) {
   Map map = map_of_poses(input, adjusted);
-  const auto& keyframes = input.odometry.keyframes;
   for (const auto& loop : loops) map.loops.push_back(loop.edge);
 
   const auto views =
@@ -289,7 +295,7 @@ Map map_of_stages(const MappingInput& input,
     landmark.map_frame = first.keyframe;
     landmark.p_frame =
         adjusted.T_map_vehicle[static_cast<std::size_t>(first.keyframe)].inverse() * *track.p_map;
-    landmark.descriptor = descriptor_of(keyframes, track);
+    landmark.descriptor = descriptor_of(input, track);
     landmark.ground = on_ground(views[t], level, options.bundle.ground);
     if (!adjusted.landmark_covariance.of_track.empty())
       landmark.covariance = adjusted.landmark_covariance.of_track[t];
@@ -306,6 +312,7 @@ Map map_of_stages(const MappingInput& input,
                    [](const Observation& a, const Observation& b) {
                      return std::pair(a.keyframe, a.camera) < std::pair(b.keyframe, b.camera);
                    });
+  map.corners = lone_corners(input, adjusted.tracks, options.min_views);
   return map;
 }
 

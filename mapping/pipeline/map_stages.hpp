@@ -61,6 +61,17 @@ struct Adjusted {
                               const MapOptions& options,
                               const Progress& progress);
 
+/// Splits joined tracks whose views contradict each other (mapping/pipeline/track_agreement.hpp),
+/// judged by the noise of key points that the last adjustment found.
+void split_wrong_joins(const MappingInput& input,
+                       const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                       double reprojection_median_px,
+                       const MapOptions& options,
+                       std::vector<JoinedTrack>& tracks);
+
+/// The descriptor that is most like those of all views of a track.
+[[nodiscard]] Descriptor descriptor_of(const MappingInput& input, const JoinedTrack& track);
+
 /// Adds the covariances of poses, of the wheels' factors and of landmarks, if `options` want them.
 /// `suspected`: errors of cameras that widen them.
 void add_covariances(const MappingInput& input,

@@ -43,22 +43,24 @@ std::vector<int> nearest_earlier(const MappingInput& input,
   return nearest;
 }
 
-std::vector<TrackMatch> match_pair(const MappingInput& input,
-                                   const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                   const std::vector<std::optional<Eigen::Vector3d>>& places,
-                                   std::size_t earlier,
-                                   std::size_t later,
-                                   const RevisitOptions& options) {
+}  // namespace
+
+std::vector<TrackMatch> match_tracks_of(const MappingInput& input,
+                                        const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                        const std::vector<std::optional<Eigen::Vector3d>>& places,
+                                        std::size_t from_keyframe,
+                                        std::size_t to_keyframe,
+                                        const RevisitOptions& options) {
   std::vector<TrackMatch> same;
-  const VoKeyframe& from = input.odometry.keyframes[earlier];
-  const VoKeyframe& to = input.odometry.keyframes[later];
-  const Rig& rig = input.rig_of(static_cast<int>(later));
+  const VoKeyframe& from = input.odometry.keyframes[from_keyframe];
+  const VoKeyframe& to = input.odometry.keyframes[to_keyframe];
+  const Rig& rig = input.rig_of(static_cast<int>(to_keyframe));
   const std::size_t cameras = std::min(from.features.size(), to.features.size());
   for (std::size_t c = 0; c < cameras; ++c) {
     const auto& mounted = rig.cameras[c];
     const FeatureGrid grid(to.features[c].pixels, mounted.camera.width, mounted.camera.height);
     const Eigen::Isometry3d T_camera_map =
-        (T_map_vehicle[later] * mounted.T_vehicle_camera).inverse();
+        (T_map_vehicle[to_keyframe] * mounted.T_vehicle_camera).inverse();
     std::vector<int> owner(to.features[c].size(), -1);
     std::vector<int> owner_distance(to.features[c].size(), options.max_hamming + 1);
     for (std::size_t f = 0; f < from.features[c].size(); ++f) {
@@ -91,12 +93,10 @@ std::vector<TrackMatch> match_pair(const MappingInput& input,
     for (std::size_t g = 0; g < owner.size(); ++g)
       if (owner[g] >= 0)
         same.push_back(
-            {owner[g], {static_cast<int>(later), static_cast<int>(c), static_cast<int>(g)}});
+            {owner[g], {static_cast<int>(to_keyframe), static_cast<int>(c), static_cast<int>(g)}});
   }
   return same;
 }
-
-}  // namespace
 
 std::vector<TrackMatch> match_revisits(const MappingInput& input,
                                        const std::vector<Eigen::Isometry3d>& T_map_vehicle,
@@ -109,8 +109,8 @@ std::vector<TrackMatch> match_revisits(const MappingInput& input,
   std::vector<std::vector<TrackMatch>> found(nearest.size());
   parallel_for(nearest.size(), options.num_threads, [&](std::size_t k) {
     if (nearest[k] >= 0)
-      found[k] = match_pair(input, T_map_vehicle, places, static_cast<std::size_t>(nearest[k]), k,
-                            options);
+      found[k] = match_tracks_of(input, T_map_vehicle, places, static_cast<std::size_t>(nearest[k]),
+                                 k, options);
   });
   std::vector<TrackMatch> same;
   for (const auto& list : found) same.insert(same.end(), list.begin(), list.end());

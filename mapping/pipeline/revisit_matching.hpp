@@ -16,6 +16,16 @@ struct RevisitOptions {
   int num_threads = 0;
 };
 
+/// Projects the tracks of one keyframe, whose positions [m, map] are known, into the images of the
+/// same cameras at another one, and searches the features near those pixels.
+[[nodiscard]] std::vector<TrackMatch> match_tracks_of(
+    const MappingInput& input,
+    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+    const std::vector<std::optional<Eigen::Vector3d>>& places,
+    std::size_t from_keyframe,
+    std::size_t to_keyframe,
+    const RevisitOptions& options);
+
 /// Finds the tracks of one pass again in the images of another pass.
 ///
 /// With approximate poses each triangulated track is projected into the nearest earlier pass and

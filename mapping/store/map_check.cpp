@@ -147,6 +147,33 @@ void check_observations(const Map& map, Findings& findings) {
   }
 }
 
+void check_corners(const Map& map, Findings& findings) {
+  for (std::size_t i = 0; i < map.corners.size() && !findings.full(); ++i) {
+    const LoneCorner& corner = map.corners[i];
+    findings.index("keyframe_corners", i, "keyframe", corner.keyframe, map.keyframes.size());
+    findings.finite("keyframe_corners", i, "pixel", corner.pixel);
+  }
+}
+
+void check_landmark_sessions(const Map& map, Findings& findings) {
+  for (std::size_t i = 0; i < map.landmark_sessions.size() && !findings.full(); ++i) {
+    const LandmarkSession& s = map.landmark_sessions[i];
+    findings.index("landmark_sessions", i, "landmark", s.landmark, map.landmarks.size());
+    findings.index("landmark_sessions", i, "session", s.session, map.sessions.size());
+    if (s.seen < 0 || s.expected < s.seen)
+      findings.add("landmark_sessions", i, "seen", std::to_string(s.seen),
+                   "0 to the " + std::to_string(s.expected) + " expected");
+  }
+}
+
+void check_motions(const Map& map, Findings& findings) {
+  for (std::size_t i = 0; i < map.keyframes.size() && !findings.full(); ++i) {
+    if (!map.keyframes[i].wheels) continue;
+    findings.finite("keyframe_motions", i, "motion", map.keyframes[i].wheels->motion);
+    findings.finite("keyframe_motions", i, "covariance", map.keyframes[i].wheels->covariance);
+  }
+}
+
 void check_loops(const Map& map, Findings& findings) {
   for (std::size_t i = 0; i < map.loops.size() && !findings.full(); ++i) {
     const LoopEdge& loop = map.loops[i];
@@ -172,6 +199,9 @@ std::vector<Problem> map_problems(const Map& map, std::size_t limit) {
   check_keyframes(map, findings);
   check_landmarks(map, findings);
   check_observations(map, findings);
+  check_motions(map, findings);
+  check_corners(map, findings);
+  check_landmark_sessions(map, findings);
   check_loops(map, findings);
   return findings.take();
 }

@@ -7,7 +7,17 @@
 
 namespace roadbook {
 
-Map load_map(const std::filesystem::path& path) { return read_map_tables(open_verified(path)); }
+Map load_map(const std::filesystem::path& path) {
+  return read_map_tables(open_verified(path), false);
+}
+
+Map load_map_with_corners(const std::filesystem::path& path) {
+  return read_map_tables(open_verified(path), true);
+}
+
+std::vector<Session> load_sessions(const std::filesystem::path& path) {
+  return read_session_table(open_verified(path));
+}
 
 MapMeta load_meta(const std::filesystem::path& path) {
   const SqlDatabase database = open_map_file(path);

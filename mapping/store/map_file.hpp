@@ -29,7 +29,14 @@ struct MapMeta {
 };
 
 /// The map, after all digests have been found right. Observations come keyframe by keyframe.
+/// Corners that no landmark explains stay in the file: only the extension of a map uses them.
 [[nodiscard]] Map load_map(const std::filesystem::path& path);
+
+/// The same, with these corners.
+[[nodiscard]] Map load_map_with_corners(const std::filesystem::path& path);
+
+/// The sessions alone, without their cameras and wheels.
+[[nodiscard]] std::vector<Session> load_sessions(const std::filesystem::path& path);
 
 /// The meta table alone: quick, table digests not checked.
 [[nodiscard]] MapMeta load_meta(const std::filesystem::path& path);

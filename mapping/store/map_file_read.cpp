@@ -45,9 +45,10 @@ class Rows {
   }
   [[nodiscard]] double real(int column) const { return statement_.real(column); }
   [[nodiscard]] std::optional<double> real_or_null(int column) const {
-    if (statement_.type(column) == SQLITE_NULL) return std::nullopt;
+    if (is_null(column)) return std::nullopt;
     return real(column);
   }
+  [[nodiscard]] bool is_null(int column) const { return statement_.type(column) == SQLITE_NULL; }
   [[nodiscard]] int columns() const { return statement_.columns(); }
   [[nodiscard]] bool boolean(int column) const { return integer(column) != 0; }
   [[nodiscard]] std::string text(int column) const { return statement_.text(column); }
@@ -60,7 +61,7 @@ class Rows {
   template <typename Matrix>
   void covariance(int column, Matrix& m) const {
     m = unknown_covariance<Matrix>();
-    if (statement_.type(column) != SQLITE_NULL) matrix(column, m);
+    if (!is_null(column)) matrix(column, m);
   }
   [[nodiscard]] Eigen::Isometry3d pose(int column) const {
     Eigen::Matrix<double, 3, 4> m;
@@ -85,27 +86,6 @@ class Rows {
   SqlStatement statement_;
   std::int64_t row_ = -1;
 };
-
-void read_sessions(const SqlDatabase& database, Map& map) {
-  for (Rows rows(database, "sessions"); rows.next();) {
-    rows.require_id();
-    Session s;
-    s.name = rows.text(1);
-    s.drive_digest = rows.text(2);
-    s.wheel_scale = rows.real(3);
-    s.wheel_scale_sigma = rows.real_or_null(4).value_or(kUnknown);
-    const auto source = scale_source_from(rows.text(5));
-    if (!source) rows.fail(5, rows.text(5), "wheels, camera_height or free");
-    s.scale_source = *source;
-    s.scale_sigma = rows.real_or_null(6).value_or(kUnknown);
-    s.t_begin_ns = rows.int64(7);
-    s.t_end_ns = rows.int64(8);
-    map.sessions.push_back(std::move(s));
-  }
-  for (Rows rows(database, "session_places"); rows.next();)
-    map.sessions[static_cast<std::size_t>(rows.index(0, map.sessions.size()))].drive_path =
-        rows.text(1);
-}
 
 void read_sensors(const SqlDatabase& database, Map& map) {
   for (Rows rows(database, "cameras"); rows.next();) {
@@ -204,6 +184,59 @@ void read_poses(const SqlDatabase& database, Map& map) {
   }
 }
 
+// Tables of schema version 2 are missing in earlier files.
+bool has_table_named(const SqlDatabase& database, const std::string& table) {
+  return database.value("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = '" +
+                        table + "'") == "1";
+}
+
+void read_motions(const SqlDatabase& database, Map& map) {
+  if (!has_table_named(database, "keyframe_motions")) return;
+  for (Rows rows(database, "keyframe_motions"); rows.next();) {
+    PlanarMotion wheels;
+    rows.matrix(1, wheels.motion);
+    rows.matrix(2, wheels.covariance);
+    wheels.distance_m = rows.real(3);
+    wheels.reversing = rows.boolean(4);
+    map.keyframes[static_cast<std::size_t>(rows.index(0, map.keyframes.size()))].wheels = wheels;
+  }
+}
+
+void read_corners(const SqlDatabase& database, Map& map) {
+  if (!has_table_named(database, "keyframe_corners")) return;
+  constexpr std::size_t kBytes = 2 * sizeof(float) + std::tuple_size_v<Descriptor>;
+  for (Rows rows(database, "keyframe_corners"); rows.next();) {
+    LoneCorner corner;
+    corner.keyframe = rows.index(1, map.keyframes.size());
+    const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(corner.keyframe)];
+    const Session& session = map.sessions[static_cast<std::size_t>(keyframe.session)];
+    corner.camera = rows.index(2, session.rig.cameras.size());
+    const std::string_view data = rows.blob(4);
+    if (data.size() % kBytes != 0 ||
+        static_cast<std::int64_t>(data.size() / kBytes) != rows.int64(3))
+      rows.fail_size(4);
+    for (std::size_t at = 0; at < data.size(); at += kBytes) {
+      corner.pixel = {unpack<float>(data, at), unpack<float>(data, at + sizeof(float))};
+      std::memcpy(corner.descriptor.data(), data.data() + at + 2 * sizeof(float),
+                  corner.descriptor.size());
+      map.corners.push_back(corner);
+    }
+  }
+}
+
+void read_landmark_sessions(const SqlDatabase& database, Map& map) {
+  if (!has_table_named(database, "landmark_sessions")) return;
+  for (Rows rows(database, "landmark_sessions"); rows.next();) {
+    LandmarkSession s;
+    s.landmark = rows.index(1, map.landmarks.size());
+    s.session = rows.index(2, map.sessions.size());
+    s.expected = rows.integer(3);
+    s.seen = rows.integer(4);
+    if (!rows.is_null(5)) s.last_ns = rows.int64(5);
+    map.landmark_sessions.push_back(s);
+  }
+}
+
 void read_landmarks(const SqlDatabase& database, Map& map) {
   for (Rows rows(database, "landmarks"); rows.next();) {
     rows.require_id();
@@ -266,15 +299,41 @@ void read_loops(const SqlDatabase& database, Map& map) {
 
 }  // namespace
 
-Map read_map_tables(const SqlDatabase& database) {
+std::vector<Session> read_session_table(const SqlDatabase& database) {
+  std::vector<Session> sessions;
+  for (Rows rows(database, "sessions"); rows.next();) {
+    rows.require_id();
+    Session s;
+    s.name = rows.text(1);
+    s.drive_digest = rows.text(2);
+    s.wheel_scale = rows.real(3);
+    s.wheel_scale_sigma = rows.real_or_null(4).value_or(kUnknown);
+    const auto source = scale_source_from(rows.text(5));
+    if (!source) rows.fail(5, rows.text(5), "wheels, camera_height or free");
+    s.scale_source = *source;
+    s.scale_sigma = rows.real_or_null(6).value_or(kUnknown);
+    s.t_begin_ns = rows.int64(7);
+    s.t_end_ns = rows.int64(8);
+    if (rows.columns() > 9) s.localised_share = rows.real_or_null(9).value_or(kUnknown);
+    sessions.push_back(std::move(s));
+  }
+  for (Rows rows(database, "session_places"); rows.next();)
+    sessions[static_cast<std::size_t>(rows.index(0, sessions.size()))].drive_path = rows.text(1);
+  return sessions;
+}
+
+Map read_map_tables(const SqlDatabase& database, bool with_corners) {
   Map map;
-  read_sessions(database, map);
+  map.sessions = read_session_table(database);
   read_sensors(database, map);
   read_vehicles(database, map);
   read_poses(database, map);
   read_landmarks(database, map);
   if (zero_means_unknown(database, "keyframes")) forget_zeros(map);
   read_observations(database, map);
+  read_motions(database, map);
+  if (with_corners) read_corners(database, map);
+  read_landmark_sessions(database, map);
   read_loops(database, map);
   return map;
 }

@@ -13,11 +13,12 @@ struct TableSql {
 
 // STRICT: a text in a column of numbers is an error. All keys are row ids: no index that a flipped
 // bit could set against its table.
-constexpr std::array<TableSql, 12> kTables{{
+constexpr std::array<TableSql, 15> kTables{{
     {"sessions",
      "id INTEGER PRIMARY KEY, name TEXT NOT NULL, drive_digest TEXT NOT NULL, "
      "wheel_scale REAL NOT NULL, wheel_scale_sigma REAL, scale_source TEXT NOT NULL, "
-     "scale_sigma REAL, t_begin_ns INTEGER NOT NULL, t_end_ns INTEGER NOT NULL"},
+     "scale_sigma REAL, t_begin_ns INTEGER NOT NULL, t_end_ns INTEGER NOT NULL, "
+     "localised_share REAL"},
     {"session_places", "session INTEGER PRIMARY KEY, drive_path TEXT NOT NULL"},
     {"cameras",
      "id INTEGER PRIMARY KEY, session INTEGER NOT NULL, camera INTEGER NOT NULL, "
@@ -39,6 +40,12 @@ constexpr std::array<TableSql, 12> kTables{{
      "drive_frame INTEGER NOT NULL, map_frame INTEGER NOT NULL, T_frame_vehicle BLOB NOT NULL, "
      "covariance BLOB, travelled_m REAL NOT NULL, reversing INTEGER NOT NULL, "
      "after_gap INTEGER NOT NULL, piece INTEGER NOT NULL"},
+    {"keyframe_motions",
+     "keyframe INTEGER PRIMARY KEY, motion BLOB NOT NULL, covariance BLOB NOT NULL, "
+     "distance_m REAL NOT NULL, reversing INTEGER NOT NULL"},
+    {"keyframe_corners",
+     "id INTEGER PRIMARY KEY, keyframe INTEGER NOT NULL, camera INTEGER NOT NULL, "
+     "count INTEGER NOT NULL, data BLOB NOT NULL"},
     {"landmarks",
      "id INTEGER PRIMARY KEY, map_frame INTEGER NOT NULL, x REAL NOT NULL, y REAL NOT NULL, "
      "z REAL NOT NULL, covariance BLOB, ground INTEGER NOT NULL"},
@@ -46,12 +53,20 @@ constexpr std::array<TableSql, 12> kTables{{
     {"observations",
      "id INTEGER PRIMARY KEY, keyframe INTEGER NOT NULL, camera INTEGER NOT NULL, "
      "count INTEGER NOT NULL, data BLOB NOT NULL"},
+    {"landmark_sessions",
+     "id INTEGER PRIMARY KEY, landmark INTEGER NOT NULL, session INTEGER NOT NULL, "
+     "expected INTEGER NOT NULL, seen INTEGER NOT NULL, last_ns INTEGER"},
     {"loops",
      "id INTEGER PRIMARY KEY, from_keyframe INTEGER NOT NULL, to_keyframe INTEGER NOT NULL, "
      "T_from_to BLOB NOT NULL, information BLOB NOT NULL, inliers INTEGER NOT NULL, "
      "accepted INTEGER NOT NULL, weight REAL NOT NULL, reason TEXT NOT NULL"},
     {"audit", "id INTEGER PRIMARY KEY, action TEXT NOT NULL, detail TEXT NOT NULL"},
 }};
+
+void create_table(const SqlDatabase& database, const TableSql& table) {
+  database.run("CREATE TABLE IF NOT EXISTS " + std::string(table.name) + "(" +
+               std::string(table.columns) + ") STRICT");
+}
 
 }  // namespace
 
@@ -69,12 +84,18 @@ void create_map_tables(const SqlDatabase& database) {
     const std::string name(table.name);
     // The audit is a history: it is never taken away.
     if (table.name != "audit") database.run("DROP TABLE IF EXISTS " + name);
-    database.run("CREATE TABLE IF NOT EXISTS " + name + "(" + std::string(table.columns) +
-                 ") STRICT");
+    create_table(database, table);
   }
   database.run(
       "CREATE TABLE IF NOT EXISTS map_meta(id INTEGER PRIMARY KEY, key TEXT NOT NULL, "
       "value TEXT NOT NULL) STRICT");
+}
+
+void migrate_map_tables(const SqlDatabase& database) {
+  for (const TableSql& table : kTables) create_table(database, table);
+  if (database.value("SELECT count(*) FROM pragma_table_info('sessions') "
+                     "WHERE name = 'localised_share'") == "0")
+    database.run("ALTER TABLE sessions ADD COLUMN localised_share REAL");
 }
 
 }  // namespace roadbook

@@ -59,6 +59,7 @@ void order_raster_ids(const SqlDatabase& database) {
 }
 
 void complete(const SqlDatabase& database) {
+  migrate_map_tables(database);
   order_raster_ids(database);
   unite_map_frames(database);
   write_layer_styles(database, utc_text(newest_session_ns(database)));

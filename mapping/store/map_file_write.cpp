@@ -19,7 +19,8 @@ void bind_or_null(SqlStatement& statement, int parameter, double value) {
 }
 
 void write_sessions(const SqlDatabase& database, const std::vector<Session>& sessions) {
-  SqlStatement session = database.prepare("INSERT INTO sessions VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqlStatement session =
+      database.prepare("INSERT INTO sessions VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqlStatement place = database.prepare("INSERT INTO session_places VALUES(?, ?)");
   std::int64_t id = 0;
   for (const Session& s : sessions) {
@@ -27,6 +28,7 @@ void write_sessions(const SqlDatabase& database, const std::vector<Session>& ses
     session.bind(4, s.wheel_scale).bind_text(6, scale_source_name(s.scale_source));
     bind_or_null(session, 5, s.wheel_scale_sigma);
     bind_or_null(session, 7, s.scale_sigma);
+    bind_or_null(session, 10, s.localised_share);
     session.bind(8, s.t_begin_ns).bind(9, s.t_end_ns).run();
     place.bind(1, id).bind_text(2, s.drive_path).run();
     ++id;
@@ -113,6 +115,51 @@ void write_poses(const SqlDatabase& database, const Map& map) {
   }
 }
 
+void write_motions(const SqlDatabase& database, const std::vector<Keyframe>& keyframes) {
+  SqlStatement insert = database.prepare("INSERT INTO keyframe_motions VALUES(?, ?, ?, ?, ?)");
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    if (!keyframes[i].wheels) continue;
+    const PlanarMotion& wheels = *keyframes[i].wheels;
+    const std::string motion = pack_matrix(wheels.motion);
+    const std::string covariance = pack_matrix(wheels.covariance);
+    insert.bind(1, static_cast<std::int64_t>(i)).bind_blob(2, motion).bind_blob(3, covariance);
+    insert.bind(4, wheels.distance_m).bind(5, wheels.reversing ? 1 : 0).run();
+  }
+}
+
+void write_corners(const SqlDatabase& database, const std::vector<LoneCorner>& corners) {
+  SqlStatement insert = database.prepare("INSERT INTO keyframe_corners VALUES(?, ?, ?, ?, ?)");
+  std::int64_t id = 0;
+  for (std::size_t begin = 0, end = 0; begin < corners.size(); begin = end) {
+    std::string bytes;
+    for (end = begin; end < corners.size() && corners[end].keyframe == corners[begin].keyframe &&
+                      corners[end].camera == corners[begin].camera;
+         ++end) {
+      pack(bytes, corners[end].pixel.x());
+      pack(bytes, corners[end].pixel.y());
+      bytes.append(reinterpret_cast<const char*>(corners[end].descriptor.data()),
+                   corners[end].descriptor.size());
+    }
+    insert.bind(1, id++).bind(2, corners[begin].keyframe).bind(3, corners[begin].camera);
+    insert.bind(4, static_cast<std::int64_t>(end - begin)).bind_blob(5, bytes).run();
+  }
+}
+
+void write_landmark_sessions(const SqlDatabase& database,
+                             const std::vector<LandmarkSession>& sessions) {
+  SqlStatement insert = database.prepare("INSERT INTO landmark_sessions VALUES(?, ?, ?, ?, ?, ?)");
+  std::int64_t id = 0;
+  for (const LandmarkSession& s : sessions) {
+    insert.bind(1, id++).bind(2, s.landmark).bind(3, s.session);
+    insert.bind(4, s.expected).bind(5, s.seen);
+    if (s.last_ns)
+      insert.bind(6, *s.last_ns);
+    else
+      insert.bind_null(6);
+    insert.run();
+  }
+}
+
 void write_landmarks(const SqlDatabase& database, const std::vector<Landmark>& landmarks) {
   SqlStatement landmark = database.prepare("INSERT INTO landmarks VALUES(?, ?, ?, ?, ?, ?, ?)");
   SqlStatement descriptor = database.prepare("INSERT INTO descriptors VALUES(?, ?)");
@@ -183,8 +230,11 @@ void write_map_tables(const SqlDatabase& database, const Map& map) {
   write_wheels(database, map.sessions);
   write_vehicles(database, map.sessions);
   write_poses(database, map);
+  write_motions(database, map.keyframes);
+  write_corners(database, map.corners);
   write_landmarks(database, map.landmarks);
   write_observations(database, map);
+  write_landmark_sessions(database, map.landmark_sessions);
   write_loops(database, map.loops);
 }
 

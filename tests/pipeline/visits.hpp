@@ -24,6 +24,11 @@ class Visits : public ::testing::Test {
     static const std::vector<std::filesystem::path> drives = render();
     return drives;
   }
+  /// The map `together.gpkg` of all visits, built from their recordings at once.
+  static const MapSummary& together() {
+    static const MapSummary summary = build_map(drives(), folder() / "together.gpkg", {});
+    return summary;
+  }
 
  private:
   static std::vector<std::filesystem::path> render() {

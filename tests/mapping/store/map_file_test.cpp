@@ -8,8 +8,10 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "mapping/store/file_digest.hpp"
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file_builder.hpp"
+#include "mapping/store/map_file_digest.hpp"
 #include "mapping/store/map_file_open.hpp"
 #include "mapping/store/map_file_seal.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
@@ -39,6 +41,10 @@ void expect_equal(const Map& a, const Map& b) {
     EXPECT_EQ(s.scale_sigma, t.scale_sigma);
     EXPECT_EQ(s.t_begin_ns, t.t_begin_ns);
     EXPECT_EQ(s.t_end_ns, t.t_end_ns);
+    if (std::isnan(s.localised_share))
+      EXPECT_TRUE(std::isnan(t.localised_share));
+    else
+      EXPECT_EQ(s.localised_share, t.localised_share);
     ASSERT_EQ(s.wheels.has_value(), t.wheels.has_value());
     if (s.wheels) {
       EXPECT_EQ(s.wheels->radius_left_m, t.wheels->radius_left_m);
@@ -67,6 +73,14 @@ void expect_equal(const Map& a, const Map& b) {
     EXPECT_EQ(a.keyframes[i].travelled_m, b.keyframes[i].travelled_m);
     EXPECT_EQ(a.keyframes[i].reversing, b.keyframes[i].reversing);
     EXPECT_EQ(a.keyframes[i].after_gap, b.keyframes[i].after_gap);
+    const auto& wheels = a.keyframes[i].wheels;
+    ASSERT_EQ(wheels.has_value(), b.keyframes[i].wheels.has_value());
+    if (wheels) {
+      EXPECT_EQ(wheels->motion, b.keyframes[i].wheels->motion);
+      EXPECT_EQ(wheels->covariance, b.keyframes[i].wheels->covariance);
+      EXPECT_EQ(wheels->distance_m, b.keyframes[i].wheels->distance_m);
+      EXPECT_EQ(wheels->reversing, b.keyframes[i].wheels->reversing);
+    }
     const int k = static_cast<int>(i);
     EXPECT_EQ(a.T_map_vehicle(k).matrix(), b.T_map_vehicle(k).matrix());
   }
@@ -86,6 +100,21 @@ void expect_equal(const Map& a, const Map& b) {
     EXPECT_EQ(a.observations[i].pixel, b.observations[i].pixel);
     EXPECT_EQ(a.observations[i].sigma_px, b.observations[i].sigma_px);
   }
+  ASSERT_EQ(a.corners.size(), b.corners.size());
+  for (std::size_t i = 0; i < a.corners.size(); ++i) {
+    EXPECT_EQ(a.corners[i].keyframe, b.corners[i].keyframe);
+    EXPECT_EQ(a.corners[i].camera, b.corners[i].camera);
+    EXPECT_EQ(a.corners[i].pixel, b.corners[i].pixel);
+    EXPECT_EQ(a.corners[i].descriptor, b.corners[i].descriptor);
+  }
+  ASSERT_EQ(a.landmark_sessions.size(), b.landmark_sessions.size());
+  for (std::size_t i = 0; i < a.landmark_sessions.size(); ++i) {
+    EXPECT_EQ(a.landmark_sessions[i].landmark, b.landmark_sessions[i].landmark);
+    EXPECT_EQ(a.landmark_sessions[i].session, b.landmark_sessions[i].session);
+    EXPECT_EQ(a.landmark_sessions[i].expected, b.landmark_sessions[i].expected);
+    EXPECT_EQ(a.landmark_sessions[i].seen, b.landmark_sessions[i].seen);
+    EXPECT_EQ(a.landmark_sessions[i].last_ns, b.landmark_sessions[i].last_ns);
+  }
   ASSERT_EQ(a.loops.size(), b.loops.size());
   for (std::size_t i = 0; i < a.loops.size(); ++i) {
     EXPECT_EQ(a.loops[i].to, b.loops[i].to);
@@ -102,7 +131,10 @@ TEST(MapFile, ComesBackBitForBit) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     const Map map = small_map(seed);
     save(folder / "a.gpkg", map);
-    expect_equal(map, load_map(folder / "a.gpkg"));
+    expect_equal(map, load_map_with_corners(folder / "a.gpkg"));
+    EXPECT_TRUE(load_map(folder / "a.gpkg").corners.empty());
+    EXPECT_EQ(load_sessions(folder / "a.gpkg").back().drive_digest,
+              map.sessions.back().drive_digest);
     const MapReport report = check_map(folder / "a.gpkg");
     EXPECT_TRUE(report.problems.empty()) << to_line(report.problems.front());
     EXPECT_EQ(report.rows.at("keyframes"), map.keyframes.size());
@@ -122,6 +154,42 @@ TEST(MapFile, OfAnEarlierProgramKnowsNothingOfTheVehicle) {
   ASSERT_FALSE(map.sessions.empty());
   EXPECT_TRUE(map.sessions.front().vehicle.is_empty());
   EXPECT_EQ(map.sessions.front().vehicle_source, VehicleSource::kNone);
+}
+
+// Gives a map file the tables of schema version 1, as the program of that version sealed it.
+void make_version_one(const std::filesystem::path& path) {
+  {
+    const SqlDatabase database(path, SqlMode::kReadWrite);
+    for (const char* table : {"keyframe_motions", "keyframe_corners", "landmark_sessions"})
+      database.run(std::string("DROP TABLE ") + table);
+    database.run("ALTER TABLE sessions DROP COLUMN localised_share");
+    database.run("UPDATE map_meta SET value = '1' WHERE key = 'schema_version'");
+    store_digests(database, compute_digests(database));
+    reserve_file_digest(database);
+  }
+  write_file_digest(path);
+}
+
+TEST(MapFile, OfSchemaVersionOneIsReadAndMigratedByTheFirstChange) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  Map map = small_map(1);
+  save(path, map);
+  make_version_one(path);
+  EXPECT_TRUE(check_map(path).problems.empty());
+  EXPECT_EQ(load_meta(path).schema_version, 1);
+  for (Keyframe& keyframe : map.keyframes) keyframe.wheels.reset();
+  for (Session& session : map.sessions)
+    session.localised_share = std::numeric_limits<double>::quiet_NaN();
+  map.corners.clear();
+  map.landmark_sessions.clear();
+  expect_equal(map, load_map_with_corners(path));
+  MapUpdate update(path);
+  update.set_meta("note", "a change");
+  update.commit();
+  EXPECT_EQ(load_meta(path).schema_version, 2);
+  EXPECT_TRUE(check_map(path).problems.empty());
+  expect_equal(map, load_map_with_corners(path));
 }
 
 TEST(MapFile, AVehicleThatCannotBeIsRefused) {
@@ -146,7 +214,7 @@ TEST(MapFile, LeavesOneFileAndSaysComplete) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg-journal"));
   const MapMeta meta = load_meta(folder / "a.gpkg");
   EXPECT_EQ(meta.state, "complete");
-  EXPECT_EQ(meta.schema_version, 1);
+  EXPECT_EQ(meta.schema_version, 2);
   EXPECT_EQ(meta.values.at("seed"), "7");
 }
 
@@ -258,12 +326,12 @@ TEST(MapFile, OtherSchemasStatesAndFilesAreRefusedInPlainWords) {
   const auto path = folder / "a.gpkg";
   EXPECT_NE(refusal(path).find("no such file"), std::string::npos);
   save(path, small_map(1));
-  set_meta(path, "schema_version", "2");
-  EXPECT_NE(refusal(path).find("schema_version: got 2, of a newer roadbook, want at most 1"),
+  set_meta(path, "schema_version", "3");
+  EXPECT_NE(refusal(path).find("schema_version: got 3, of a newer roadbook, want at most 2"),
             std::string::npos);
   set_meta(path, "schema_version", "0");
   EXPECT_NE(refusal(path).find("schema_version: got 0"), std::string::npos);
-  set_meta(path, "schema_version", "1");
+  set_meta(path, "schema_version", "2");
   set_meta(path, "state", "part");
   EXPECT_NE(refusal(path).find("state: got part, want complete"), std::string::npos);
   std::FILE* file = std::fopen((folder / "b.gpkg").c_str(), "w");

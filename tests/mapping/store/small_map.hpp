@@ -130,6 +130,26 @@ inline Map small_map(std::uint64_t seed, const SmallMapSize& size = {}) {
         o.sigma_px = static_cast<float>(random.uniform(0.5, 2.0));
         map.observations.push_back(o);
       }
+  for (std::size_t k = 1; k < map.keyframes.size(); k += 2) {
+    map.keyframes[k].wheels = PlanarMotion{{random.normal(), random.normal(), random.normal()},
+                                           random_covariance<3>(random),
+                                           random.uniform(),
+                                           true};
+    LoneCorner corner;
+    corner.keyframe = static_cast<int>(k);
+    corner.camera = static_cast<int>(k) % size.cameras;
+    for (int i = 0; i < 2; ++i) {
+      corner.pixel = {static_cast<float>(random.uniform(0.0, 1280.0)), 7.25F};
+      for (std::uint8_t& byte : corner.descriptor)
+        byte = static_cast<std::uint8_t>(random.below(256));
+      map.corners.push_back(corner);
+    }
+  }
+  if (size.sessions > 1) {
+    map.sessions.back().localised_share = 0.875;
+    map.landmark_sessions.push_back({2, 1, 5, 3, map.keyframes.back().t_ns});
+    map.landmark_sessions.push_back({4, 1, 6, 0, std::nullopt});
+  }
   LoopEdge loop;
   loop.from = 1;
   loop.to = static_cast<int>(map.keyframes.size()) - 1;

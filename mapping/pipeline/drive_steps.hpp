@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/progress.hpp"
+#include "drive/drive.hpp"
+#include "mapping/map.hpp"
+#include "mapping/pipeline/map_options.hpp"
+#include "mapping/pipeline/map_stages.hpp"
+#include "mapping/store/map_file_builder.hpp"
+#include "vo/own_car_mask.hpp"
+
+namespace roadbook {
+
+// Steps of a build for one drive, which an extension of a map takes as well.
+
+/// Odometry of a drive, from its checkpoint if there is one. Throws Refused for a drive with too
+/// few keyframes.
+[[nodiscard]] VoResult odometry_of(const Drive& drive,
+                                   const OwnCar& car,
+                                   std::size_t index,
+                                   const MapOptions& options,
+                                   MapFileBuilder& build,
+                                   const Progress& progress);
+
+/// Appends what the odometry doubts about the sensors.
+void add_doubts(const Drive& drive, const VoResult& odometry, std::vector<Problem>& warnings);
+
+/// Keyframes that `remove_short_segments` took away.
+[[nodiscard]] Problem short_segments_warning(const Drive& drive, int keyframes);
+
+/// The session of a drive, without what the map knows of its scale.
+[[nodiscard]] Session session_of(const Drive& drive,
+                                 const OwnCar& car,
+                                 const MapOptions& options,
+                                 const std::filesystem::path& map);
+
+/// Says what gave session number `index` of an adjustment its scale. `ground_sigma`: of the scale
+/// by the cameras' height; empty if that was not used.
+void set_scale(const Adjusted& adjusted,
+               std::size_t index,
+               const std::optional<double>& ground_sigma,
+               Session& session);
+
+}  // namespace roadbook

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mapping/pipeline/map_stages.hpp"
+#include "mapping/sessions/join_session.hpp"
+
+namespace roadbook {
+
+/// Adjusts a map with a further session [metric-semantic maps, section IV-B, over sessions].
+///
+/// - SessionAdjust::kNear: free are the session's poses and as many poses of the map, those that
+/// see
+///   most of its landmarks. The other poses are fixed; of each point they take part with a few
+///   views. So the cost does not grow with the number of sessions.
+/// - SessionAdjust::kAll: all poses; the first session's poses have a weak prior as the gauge.
+/// - SessionAdjust::kNone: the session's poses, against landmarks of the map that do not move.
+///
+/// Tracks of the session whose views contradict each other are split. The result's `tracks` have
+/// positions, its covariances are empty. Deterministic on any number of threads. Throws Refused if
+/// the adjustment fails; Interrupted.
+[[nodiscard]] Adjusted adjust_session(const JoinedSession& joined,
+                                      const Map& map,
+                                      const MapOptions& options,
+                                      const Progress& progress);
+
+/// The part of an adjustment that belongs to the session: its poses and observations, with indices
+/// as if it were alone.
+[[nodiscard]] Adjusted session_alone(const JoinedSession& joined, const Adjusted& adjusted);
+
+}  // namespace roadbook

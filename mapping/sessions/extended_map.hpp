@@ -1,0 +1,24 @@
+#pragma once
+
+#include "mapping/map.hpp"
+#include "mapping/pipeline/map_options.hpp"
+#include "mapping/pipeline/map_stages.hpp"
+#include "mapping/sessions/join_session.hpp"
+#include "mapping/sessions/place_session.hpp"
+
+namespace roadbook {
+
+/// The map with a further session. The caller completes its `session`.
+///
+/// Map frames stay as they are. A keyframe of the session gets the nearest map frame of its piece
+/// within 2 m; where there is none, its own pose becomes a map frame. Poses and landmarks that the
+/// adjustment did not move keep their numbers, bit for bit. Landmarks keep their order, new ones
+/// follow. Each localised keyframe gives a loop from the nearest keyframe of the map.
+[[nodiscard]] Map extended_map(const Map& map,
+                               const Session& session,
+                               const JoinedSession& joined,
+                               const PlacedSession& placed,
+                               const Adjusted& adjusted,
+                               const MapOptions& options);
+
+}  // namespace roadbook
