@@ -8,7 +8,7 @@
 namespace roadbook {
 
 /// Corners of each image that are kept although no landmark explains them, the strongest ones.
-inline constexpr std::size_t kLoneCornersPerImage = 24;
+inline constexpr std::size_t kLoneCornersPerImage = 6;
 
 /// The key points that belong to no landmark, at most `kLoneCornersPerImage` an image. `tracks`
 /// with a position and `min_views` views or more are landmarks. Keyframes before `first_keyframe`

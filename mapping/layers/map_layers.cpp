@@ -24,6 +24,17 @@ namespace {
 constexpr bool kVector = true;
 constexpr bool kRaster = false;
 
+std::vector<std::string> names_in(const SqlDatabase& database) {
+  const auto& own = map_table_names();
+  std::vector<std::string> names;
+  SqlStatement rows = database.prepare(
+      "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT GLOB 'gpkg_*' AND name NOT "
+      "GLOB 'rtree_*' AND name NOT GLOB 'sqlite_*' AND name != 'map_meta' ORDER BY name");
+  while (rows.step())
+    if (std::find(own.begin(), own.end(), rows.text(0)) == own.end()) names.push_back(rows.text(0));
+  return names;
+}
+
 }  // namespace
 
 struct MapLayers::Impl {
@@ -73,15 +84,10 @@ bool MapLayers::has(const std::string& name) const {
   return row.step() && row.integer(0) == 1;
 }
 
-std::vector<std::string> MapLayers::all_names() const {
-  const auto& own = map_table_names();
-  std::vector<std::string> names;
-  SqlStatement rows = impl_->database.prepare(
-      "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT GLOB 'gpkg_*' AND name NOT "
-      "GLOB 'rtree_*' AND name NOT GLOB 'sqlite_*' AND name != 'map_meta' ORDER BY name");
-  while (rows.step())
-    if (std::find(own.begin(), own.end(), rows.text(0)) == own.end()) names.push_back(rows.text(0));
-  return names;
+std::vector<std::string> MapLayers::all_names() const { return names_in(impl_->database); }
+
+std::vector<std::string> layer_names(const std::filesystem::path& map) {
+  return names_in(open_map_file(map));
 }
 
 VectorLayer MapLayers::read_layer(const std::string& name) const {

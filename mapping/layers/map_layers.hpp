@@ -42,4 +42,7 @@ class MapLayers {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Names as of `MapLayers::all_names`. Quick: digests are not checked.
+[[nodiscard]] std::vector<std::string> layer_names(const std::filesystem::path& map);
+
 }  // namespace roadbook

@@ -111,7 +111,7 @@ void build_from(const std::vector<Drive>& drives,
   std::vector<std::string> names_before;
   if (existing) {
     keep_tables = tables_to_keep(*existing, map_path, drives, options, summary.warnings);
-    names_before = MapLayers(map_path).all_names();
+    names_before = layer_names(map_path);
   }
   MapFileBuilder build(map_path, key);
   summary.warnings.insert(summary.warnings.end(), build.warnings().begin(), build.warnings().end());
@@ -199,7 +199,7 @@ void build_from(const std::vector<Drive>& drives,
     build.finish(map, meta, finish);
     return 0;
   });
-  const auto names_now = MapLayers(map_path).all_names();
+  const auto names_now = layer_names(map_path);
   std::set_difference(names_before.begin(), names_before.end(), names_now.begin(), names_now.end(),
                       std::back_inserter(summary.dropped));
   summary.digest = load_meta(map_path).digest;

@@ -11,12 +11,13 @@
 namespace roadbook {
 namespace {
 
-constexpr int kFixedViews = 6;   // of a point, by poses that do not move
-constexpr double kGaugeM = 0.3;  // standard deviations of the first session's poses
+constexpr std::size_t kSessionPosesPerFree = 2;  // of poses of the map
+constexpr int kFixedViews = 6;                   // of a point, by poses that do not move
+constexpr double kGaugeM = 0.3;                  // standard deviations of the first session's poses
 constexpr double kGaugeRad = 0.1;
 
-// The poses that may move: those of the session and the same number of the map, which see most of
-// the session's landmarks.
+// The poses that may move: those of the session and half as many of the map, which see most of the
+// session's landmarks.
 std::vector<bool> free_poses(const JoinedSession& joined,
                              const std::vector<JoinedTrack>& tracks,
                              SessionAdjust adjust) {
@@ -36,7 +37,8 @@ std::vector<bool> free_poses(const JoinedSession& joined,
     if (shared[k] >= kLeastShared) order.push_back(k);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return shared[a] > shared[b]; });
-  if (order.size() > count - joined.first_keyframe) order.resize(count - joined.first_keyframe);
+  const std::size_t most = (count - joined.first_keyframe) / kSessionPosesPerFree;
+  if (order.size() > most) order.resize(most);
   for (const std::size_t k : order) free[k] = true;
   return free;
 }

@@ -10,9 +10,8 @@ namespace roadbook {
 
 /// Adjusts a map with a further session [metric-semantic maps, section IV-B, over sessions].
 ///
-/// - SessionAdjust::kNear: free are the session's poses and as many poses of the map, those that
-/// see
-///   most of its landmarks. The other poses are fixed; of each point they take part with a few
+/// - SessionAdjust::kNear: free are the session's poses and half as many poses of the map, which
+///   see most of its landmarks. The other poses are fixed; of each point they take part with a few
 ///   views. So the cost does not grow with the number of sessions.
 /// - SessionAdjust::kAll: all poses; the first session's poses have a weak prior as the gauge.
 /// - SessionAdjust::kNone: the session's poses, against landmarks of the map that do not move.

@@ -160,7 +160,7 @@ void extend_from(const std::vector<Drive>& drives,  // one
   const std::string before = load_meta(map_path).digest;
   const std::string key = extension_checkpoint_key(before, drives, options);
   const auto keep_tables = tables_of_extension(map_path, map, options, summary);
-  const auto names_before = MapLayers(map_path).all_names();
+  const auto names_before = layer_names(map_path);
   MapFileBuilder build(map_path, key);
   summary.warnings.insert(summary.warnings.end(), build.warnings().begin(), build.warnings().end());
 
@@ -241,7 +241,7 @@ void extend_from(const std::vector<Drive>& drives,  // one
     build.finish(extended, meta, finish);
     return 0;
   });
-  const auto names_now = MapLayers(map_path).all_names();
+  const auto names_now = layer_names(map_path);
   std::set_difference(names_before.begin(), names_before.end(), names_now.begin(), names_now.end(),
                       std::back_inserter(summary.dropped));
   summary.digest = load_meta(map_path).digest;

@@ -13,6 +13,10 @@
 namespace roadbook {
 namespace {
 
+// A place that many sessions have seen has more landmarks than a pose needs: those with the most
+// views from around stay, so that the time of a keyframe does not grow with the sessions.
+constexpr std::size_t kMostLandmarks = 1200;
+
 // The motion between two keyframes by odometry, as a prediction. Empty where it is not known.
 std::optional<PlanarMotion> predicted_motion(const VoKeyframe& from, const VoKeyframe& to) {
   if (to.after_gap) return std::nullopt;
@@ -38,7 +42,9 @@ std::vector<LocalisedFrame> localise_keyframes(const MappingInput& drive,
                                                const LandmarkIndex& index,
                                                const Progress& progress) {
   const auto& keyframes = drive.odometry.keyframes;
-  Localiser localiser(index, drive.half_rigs.front(), {});
+  LocaliserOptions options;
+  options.fix.near.max_landmarks = kMostLandmarks;
+  Localiser localiser(index, drive.half_rigs.front(), options);
   std::vector<LocalisedFrame> localised;
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     LocaliserFrame frame;
@@ -129,6 +135,46 @@ void add_covariances_between(const MappingInput& drive, std::vector<PlacedKeyfra
   }
 }
 
+// Keyframes that the localiser passed by, such as the first ones, before it knew the place: their
+// relaxed poses tell where to look for landmarks.
+void localise_rest(const MappingInput& drive,
+                   const LandmarkIndex& index,
+                   int piece,
+                   PlacedSession& session) {
+  constexpr double kWithinM = 0.3;  // standard deviations of the relaxed poses
+  constexpr double kWithinRad = 0.02;
+  const Rig& rig = drive.half_rigs.front();
+  FrameFixOptions options;
+  options.near.max_landmarks = kMostLandmarks;
+  options.use_prior = false;
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal() << Eigen::Vector3d::Constant(kWithinM * kWithinM),
+      Eigen::Vector3d::Constant(kWithinRad * kWithinRad);
+  for (std::size_t k = 0; k < session.keyframes.size(); ++k) {
+    PlacedKeyframe& placed = session.keyframes[k];
+    if (placed.is_localised || placed.piece != piece) continue;
+    const FrameCorners corners(rig, drive.odometry.keyframes[k].features);
+    std::vector<int> in_view;
+    auto fix =
+        fix_frame(rig, corners, index, {placed.T_map_vehicle, covariance}, options, &in_view);
+    if (!fix || !has_enough(*fix, rig, options)) continue;
+    const Eigen::Isometry3d jump = placed.T_map_vehicle.inverse() * fix->T_map_vehicle;
+    const int near = index.nearest_keyframe(fix->T_map_vehicle.translation());
+    if (jump.translation().norm() > 2.0 * kWithinM || near < 0 ||
+        so3_log(jump.linear()).norm() > 2.0 * kWithinRad)
+      continue;
+    placed.is_localised = true;
+    placed.near = near;
+    placed.T_map_vehicle = fix->T_map_vehicle;
+    placed.covariance = compose_covariance(
+        index.map().keyframes[at(near)].covariance,
+        index.map().T_map_vehicle(near).inverse() * fix->T_map_vehicle, fix->covariance);
+    placed.views = std::move(fix->views);
+    placed.in_view = std::move(in_view);
+    ++session.localised;
+  }
+}
+
 }  // namespace
 
 PlacedSession place_session(const MappingInput& drive,
@@ -215,6 +261,7 @@ PlacedSession place_session(const MappingInput& drive,
     placed.in_view = std::move(frame.in_view);
     ++session.localised;
   }
+  if (session.localised > 0) localise_rest(drive, index, piece, session);
   add_covariances_between(drive, session.keyframes);
   return session;
 }

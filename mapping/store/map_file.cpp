@@ -16,7 +16,7 @@ Map load_map_with_corners(const std::filesystem::path& path) {
 }
 
 std::vector<Session> load_sessions(const std::filesystem::path& path) {
-  return read_session_table(open_verified(path));
+  return read_session_table(open_map_file(path));
 }
 
 MapMeta load_meta(const std::filesystem::path& path) {

@@ -35,7 +35,7 @@ struct MapMeta {
 /// The same, with these corners.
 [[nodiscard]] Map load_map_with_corners(const std::filesystem::path& path);
 
-/// The sessions alone, without their cameras and wheels.
+/// The sessions alone, without their cameras and wheels: quick, digests are not checked.
 [[nodiscard]] std::vector<Session> load_sessions(const std::filesystem::path& path);
 
 /// The meta table alone: quick, table digests not checked.

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "mapping/sessions/extend_map.hpp"
+#include "tests/pipeline/malaga_pairs.hpp"
 #include "tests/pipeline/session_residuals.hpp"
 #include "tests/pipeline/visits.hpp"
+#include "tests/support/real_data.hpp"
 
 // A map is extended by further visits without the recordings of earlier ones. The judges: the truth
 // of the simulation, and the map that is built from all recordings at once.
@@ -95,6 +99,36 @@ TEST_F(Visits, LeaveTheMapAsItIsWhereNothingMayMove) {
                   : 0;
   EXPECT_GT(joined, 2000U);
   EXPECT_LT(summary.truth_sessions.at(1).offset.value().shift_m.norm(), 0.03);
+}
+
+// One camera, no wheels: the second drive extends the map of the first without its recording.
+TEST(ExtendRecorded, MalagaBPassesTheFramesOfA) {
+  ROADBOOK_REQUIRE_DATA(a, "drives/malaga07_a");
+  ROADBOOK_REQUIRE_DATA(b, "drives/malaga07_b");
+  const auto file = test::fresh_folder("malaga_extended") / "map.gpkg";
+  build_map({a}, file, {});
+  const Map before = load_map(file);
+  MapOptions none;
+  none.adjust = SessionAdjust::kNone;
+  const MapSummary summary = extend_map(b, file, none);
+  EXPECT_GT(summary.localised_share.value(), 0.9);
+  const Map after = load_map(file);
+  expect_same_frames(before, after);
+  for (std::size_t l = 0; l < before.landmarks.size(); ++l)
+    EXPECT_EQ(after.landmarks[l].p_frame, before.landmarks[l].p_frame) << l;
+  int loops = 0;
+  int right = 0;
+  for (const LoopEdge& loop : after.loops) {
+    if (!loop.accepted) continue;
+    const Keyframe& from = after.keyframes[static_cast<std::size_t>(loop.from)];
+    const Keyframe& to = after.keyframes[static_cast<std::size_t>(loop.to)];
+    if (from.session != 0 || to.session != 1) continue;
+    ++loops;
+    const double expected = test::frame_of_malaga_a(1600.0 + 2.0 * to.drive_frame);
+    right += std::abs(2.0 * from.drive_frame - expected) <= 16.0 ? 1 : 0;
+  }
+  EXPECT_GT(loops, 50);
+  EXPECT_GE(right, 0.95 * loops);
 }
 
 }  // namespace

@@ -76,9 +76,10 @@ TEST_F(MapVerb, ADamagedMapIsToldAndLeftAsItIs) {
   expect_refused("error: place.gpkg: ");
 }
 
-TEST_F(MapVerb, AMapWhoseOwnDrivesAreNotAtHandIsNotExtended) {
+TEST_F(MapVerb, AMapWhoseOwnDrivesAreNotAtHandIsNotBuiltAgain) {
   const std::string before = test::read_text(map_);
-  const auto result = test::run_command("roadbook map drive -m place.gpkg -q", folder_.path());
+  const auto result =
+      test::run_command("roadbook map drive -m place.gpkg --batch -q", folder_.path());
   EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.err.find("drive of session lot: got no such folder, want the drive"),
             std::string::npos)
@@ -100,19 +101,19 @@ std::string digest_of_map(const std::string& arguments, const fs::path& folder) 
   return nlohmann::json::parse(result.out).at("digest");
 }
 
-TEST(MapOfFurtherDrives, IsTheOneOfAllDrives) {
+TEST(MapOfFurtherDrives, OfABatchIsTheOneOfAllDrives) {
   const test::ScratchFolder folder;
   for (const int visit : {0, 1}) simulate_visit(visit, folder.path());
   const std::string all = digest_of_map("visit0 visit1 -m all.gpkg", folder.path());
   EXPECT_NE(digest_of_map("visit0 -m place.gpkg", folder.path()), all);
   fs::copy_file(folder.path() / "place.gpkg", folder.path() / "other_seed.gpkg");
-  EXPECT_EQ(digest_of_map("visit1 -m place.gpkg", folder.path()), all);
+  EXPECT_EQ(digest_of_map("visit1 -m place.gpkg --batch", folder.path()), all);
   EXPECT_EQ(digest_of_map("visit0 visit1 -m place.gpkg", folder.path()), all) << "built again";
   EXPECT_EQ(digest_of_map("visit1 -m place.gpkg --replace", folder.path()),
             digest_of_map("visit1 -m one.gpkg", folder.path()));
   // With another seed, the command builds the whole map with this seed and reports it.
   const auto seed =
-      test::run_command("roadbook map visit1 -m other_seed.gpkg --seed 5", folder.path());
+      test::run_command("roadbook map visit1 -m other_seed.gpkg --batch --seed 5", folder.path());
   EXPECT_EQ(seed.status, 0) << seed.err;
   EXPECT_NE(seed.err.find("options: got others than the map was made with"), std::string::npos)
       << seed.err;
@@ -122,6 +123,51 @@ TEST(MapOfFurtherDrives, IsTheOneOfAllDrives) {
   EXPECT_NE(fewer.err.find("error: visit0: drive: got session visit0 of all.gpkg, want"),
             std::string::npos)
       << fewer.err;
+}
+
+// The recordings of earlier drives are gone, as in a car that keeps maps alone.
+TEST(MapOfFurtherDrives, IsExtendedWithoutItsRecordings) {
+  const test::ScratchFolder folder;
+  for (const int visit : {0, 1, 2}) simulate_visit(visit, folder.path());
+  const auto run = [&](const std::string& arguments) {
+    return test::run_command("roadbook map " + arguments + " -m place.gpkg -q --json",
+                             folder.path());
+  };
+  ASSERT_EQ(run("visit0").status, 0);
+  fs::copy_file(folder.path() / "place.gpkg", folder.path() / "before.gpkg");
+  fs::rename(folder.path() / "visit0", folder.path() / "away");
+  const auto both = run("visit1 visit2");
+  ASSERT_EQ(both.status, 0) << both.err;
+  const auto json = nlohmann::json::parse(both.out);
+  EXPECT_EQ(json.at("sessions"), 3);
+  EXPECT_GT(json.at("localised_share"), 0.9);
+  // The same command again, and its last drive alone, have nothing to do.
+  for (const char* again : {"visit1 visit2", "visit2"}) {
+    const auto done = run(again);
+    EXPECT_EQ(done.status, 0) << done.err;
+    EXPECT_EQ(nlohmann::json::parse(done.out).at("unchanged"), true) << again;
+  }
+  // A command that was stopped after its first drive goes on with the second.
+  fs::copy_file(folder.path() / "before.gpkg", folder.path() / "place.gpkg",
+                fs::copy_options::overwrite_existing);
+  ASSERT_EQ(run("visit1").status, 0);
+  const auto rest = run("visit1 visit2");
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_EQ(nlohmann::json::parse(rest.out).at("digest"), json.at("digest"));
+  EXPECT_EQ(test::run_command("roadbook check place.gpkg", folder.path()).status, 0);
+
+  const auto refused = [&](const std::string& arguments, int status, const std::string& line) {
+    const std::string before = test::read_text(folder.path() / "place.gpkg");
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, status) << arguments;
+    EXPECT_NE(result.err.find(line), std::string::npos) << result.err;
+    EXPECT_TRUE(test::read_text(folder.path() / "place.gpkg") == before) << arguments;
+  };
+  refused("visit1", 2, "visit1: drive: got session visit1 of place.gpkg, want drives that the map");
+  refused("visit2 --batch", 2, "drive of session visit0: got no such folder");
+  refused("visit2 --adjust much", 1, "--adjust");
+  refused("visit1 visit2 --as tuesday", 1, "--as: got tuesday, want a name for one drive");
+  refused("visit2 --adjust near --equal-rows", 1, "want --adjust all");
 }
 
 // Both visits are of one simulated place, so one alignment compares both with the truth.
