@@ -8,7 +8,7 @@
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/friction/friction_problem.hpp"
 #include "diagnosis/inference/score_table.hpp"
-#include "diagnosis/range/range_mixture.hpp"
+#include "diagnosis/range/fitted_mixture.hpp"
 
 namespace roadbook {
 namespace {

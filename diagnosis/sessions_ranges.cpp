@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "diagnosis/inference/score_table.hpp"
+#include "diagnosis/range/fitted_mixture.hpp"
 #include "diagnosis/range/range_diagnosis.hpp"
-#include "diagnosis/range/range_mixture.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/sessions_diagnosis.hpp"
 

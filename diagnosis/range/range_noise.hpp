@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "diagnosis/inference/noise_cause.hpp"
-#include "diagnosis/range/range_mixture.hpp"
+#include "diagnosis/range/fitted_mixture.hpp"
 #include "diagnosis/range/range_readings.hpp"
 
 namespace roadbook {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "diagnosis/inference/findings.hpp"
-#include "diagnosis/range/range_mixture.hpp"
+#include "diagnosis/range/fitted_mixture.hpp"
 #include "diagnosis/range/range_readings.hpp"
 
 namespace roadbook {

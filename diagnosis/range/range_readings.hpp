@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/range/range_map.hpp"
 #include "diagnosis/streams/streams.hpp"
 #include "drive/drive.hpp"
+#include "mapping/occupancy/range_map.hpp"
 
 namespace roadbook {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "diagnosis/range/range_map.hpp"
+#include "mapping/occupancy/range_map.hpp"
 
 namespace roadbook::test {
 

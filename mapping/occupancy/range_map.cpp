@@ -1,4 +1,4 @@
-#include "diagnosis/range/range_map.hpp"
+#include "mapping/occupancy/range_map.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
