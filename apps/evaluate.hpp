@@ -44,6 +44,7 @@ Experiment robustness_experiment();
 Experiment covariance_experiment();
 Experiment localisation_experiment();
 Experiment sessions_experiment();
+Experiment occupancy_experiment();
 
 /// Returns all experiments. To add one, declare its function above and list it in
 /// apps/verbs/evaluate_verb.cpp.

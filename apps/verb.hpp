@@ -35,6 +35,7 @@ Verb overhead_verb();
 Verb label_verb();
 Verb roads_verb();
 Verb detect_verb();
+Verb occupancy_verb();
 Verb diagnose_verb();
 Verb export_verb();
 Verb query_verb();

@@ -31,10 +31,10 @@ ExitStatus run_evaluate(const EvaluateCommand& command, Console& console) {
 }  // namespace
 
 std::vector<Experiment> all_experiments() {
-  return {spm_experiment(),         speeds_experiment(),     people_experiment(),
-          labels_experiment(),      laps_experiment(),       rows_experiment(),
-          diagnosis_experiment(),   robustness_experiment(), covariance_experiment(),
-          localisation_experiment(), sessions_experiment()};
+  return {spm_experiment(),          speeds_experiment(),     people_experiment(),
+          labels_experiment(),       laps_experiment(),       rows_experiment(),
+          diagnosis_experiment(),    robustness_experiment(), covariance_experiment(),
+          localisation_experiment(), sessions_experiment(),   occupancy_experiment()};
 }
 
 Verb evaluate_verb() {
@@ -49,7 +49,7 @@ Verb evaluate_verb() {
             options.add("--out,-o", &command->out, "folder for figures and results");
             options.add("--config", &command->config, "YAML file with the experiment's parameters");
             options.add("--data", &command->data,
-                        "recording (laps) or annotated pictures (labels)");
+                        "recording (laps, occupancy) or annotated pictures (labels)");
             options.add("--only", &command->only,
                         "beginning of the names to run: effects, several with commas (diagnosis), "
                         "drives (rows), faults (robustness), or kinds of drives (covariance)");

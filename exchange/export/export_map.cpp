@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "exchange/export/export_formats.hpp"
+#include "exchange/export/nav2/nav2_occupancy.hpp"
 #include "semantics/labels/label_layers.hpp"
 
 namespace roadbook {
@@ -91,6 +92,12 @@ std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
   if (format == "gpkg") return export_gpkg(map, out, options);
   if (format == "path") return export_path(map, out, options);
   if (format == "spm") return export_spm(map, out, options);
+  if (format == "nav2" && !options.layers.empty()) {
+    for (const std::string& layer : options.layers)
+      if (layer != "occupancy")
+        throw InvalidOption("--layer", layer, "occupancy for nav2, or none for the masks");
+    return export_nav2_occupancy(map, out);
+  }
   if (format == "nav2") return export_nav2(map, out, options, noted);
   if (format == "qgis") return export_qgis(map, out);
   if (format == "lanelet2") return export_lanelet2(map, out, options, noted);

@@ -24,8 +24,8 @@ struct ExportOptions {
   /// For geojson, lanelet2, opendrive, commonroad. Empty: the origin stored in the map (`map_meta`:
   /// `origin_latitude_deg`, `origin_longitude_deg`, `origin_x_axis_deg`).
   std::optional<GeoOrigin> origin{};
-  /// Layers to write (geojson, gpkg: vector; geotiff: raster); empty: all, of geojson without
-  /// `landmark_points`.
+  /// Layers to write (geojson, gpkg: vector; geotiff: raster; nav2: `occupancy` instead of the
+  /// masks); empty: all, of geojson without `landmark_points`.
   std::vector<std::string> layers{};
   double step_m = 0.5;  ///< path: between the rows of a lane
   /// path: the route from the first to the second position [m, map frame] instead of all lanes.

@@ -138,7 +138,8 @@ const std::vector<std::string>& measured_tables() {
   static const std::vector<std::string> names{
       "friction_settings", "friction_knots", "property_classes", "sighting_sessions",
       "detections",        "looks",          "person_examples",  "person_answers",
-      "person_instants",   "box_examples",   kSpeedConfigTable};
+      "person_instants",   "box_examples",   kSpeedConfigTable,  "occupancy_patches",
+      "occupancy_settings"};
   return names;
 }
 

@@ -109,12 +109,14 @@ struct BeamPosterior {
     const auto i = std::min(static_cast<std::size_t>(x), sums.size() - 2);
     return sums[i] + (x - static_cast<double>(i)) * (sums[i + 1] - sums[i]);
   }
-  /// Probability that a cell between two distances is occupied. `otherwise`: its prior.
-  [[nodiscard]] double occupied(double from_m, double to_m, double otherwise) const {
+  /// Probability that a cell between two distances is occupied. `prior`: before the reading;
+  /// `passed`: if the beam crossed the cell.
+  [[nodiscard]] double occupied(double from_m, double to_m, double prior, double passed) const {
     const double in_cell = at(held, to_m) - at(held, from_m);
     const double in_ring = at(before, to_m) - at(before, from_m);
     // Cells of the ring that do not hold the first surface are as unknown as those behind it.
-    return in_cell + otherwise * (at(before, from_m) + in_ring - in_cell);
+    return in_cell + prior * (at(before, from_m) + in_ring - in_cell) +
+           passed * (1.0 - at(before, to_m));
   }
 };
 
@@ -128,18 +130,20 @@ void InverseRangeOptions::check() const {
   require("cell_m", cell_m, 0.005, 10.0, "0.005 to 10");
   require("surfaces_per_m", surfaces_per_m, 1e-5, 100.0, "1e-5 to 100");
   require("cone_rad", cone_rad, 0.0, 3.15, "0 to 3.15");
-  require("temper", temper, 1e-4, 1.0, "0.0001 to 1");
+  require("met", met, 0.05, 1.0, "0.05 to 1");
   require("most_log_odds", most_log_odds, 0.1, 30.0, "0.1 to 30");
 }
 
 InverseRangeModel::InverseRangeModel(const RangeMixture& mixture,
                                      double max_m,
                                      const InverseRangeOptions& options)
-    : max_m_(max_m), cell_m_(options.cell_m) {
+    : max_m_(max_m), cell_m_(options.cell_m), met_(options.cone_rad > 0.0 ? 1.0 : options.met) {
   options.check();
   constexpr double kMostSteps = 2000.0;
   step_m_ = std::max(0.5 * cell_m_, max_m / kMostSteps);
-  prior_ = -std::expm1(-options.surfaces_per_m * cell_m_);
+  constexpr double kMostPrior = 0.5;
+  prior_ = std::min(kMostPrior, -std::expm1(-options.surfaces_per_m * cell_m_) / met_);
+  const double passed = prior_ * (1.0 - met_) / (1.0 - prior_ * met_);
   width_ = static_cast<std::size_t>(std::ceil(max_m / step_m_));
   rows_ = width_ + 2;
   ends_.resize(rows_);
@@ -149,12 +153,12 @@ InverseRangeModel::InverseRangeModel(const RangeMixture& mixture,
   for (std::size_t row = 0; row < rows_; ++row) {
     const bool maximum = row + 1 == rows_;
     const double z = maximum ? max_m : std::min(static_cast<double>(row) * step_m_, max_m - 1e-6);
-    const double end = std::ceil((z + 1.5 * cell_m_) / step_m_);
+    const double end = std::ceil((z + 0.75 * cell_m_) / step_m_);
     ends_[row] = maximum ? width_ : std::min(width_, static_cast<std::size_t>(end));
     const BeamPosterior posterior(z, prior, forward, step_m_);
     for (std::size_t chord = 0; chord < kChords; ++chord)
       fill_row(row, chord, options, [&](double from_m, double to_m) {
-        return posterior.occupied(std::max(0.0, from_m), to_m, prior_);
+        return posterior.occupied(std::max(0.0, from_m), to_m, prior_, passed);
       });
   }
 }
@@ -169,7 +173,7 @@ void InverseRangeModel::fill_row(std::size_t row,
   for (std::size_t i = 0; i < ends_[row]; ++i) {
     const double middle = static_cast<double>(i) * step_m_;
     const double p = std::clamp(occupied(middle - half, middle + half), 1e-12, 1.0 - 1e-12);
-    const double change = options.temper * (logit(p) - logit(prior_));
+    const double change = logit(p) - logit(prior_);
     table_[chord][row * width_ + i] =
         static_cast<float>(std::clamp(change, -options.most_log_odds, options.most_log_odds));
   }
@@ -181,7 +185,7 @@ std::span<const float> InverseRangeModel::changes(double read_m, double chord_m)
   const std::size_t row =
       is_maximum(read_m, max_m_)
           ? rows_ - 1
-          : std::min(rows_ - 2, static_cast<std::size_t>(std::lround(read_m / step_m_)));
+          : std::min(rows_ - 2, static_cast<std::size_t>(read_m / step_m_ + 0.5));
   const auto chord = static_cast<std::size_t>(
       std::clamp((chord_m / cell_m_ - 1.0) / kDiagonal * (kChords - 1) + 0.5, 0.0, kChords - 1.0));
   return {table_[chord].data() + row * width_, ends_[row]};
