@@ -4,6 +4,7 @@
 
 #include "apps/evaluate.hpp"
 #include "apps/evaluation/sessions/session_study.hpp"
+#include "apps/report/chart.hpp"
 #include "base/format.hpp"
 #include "base/whole_file.hpp"
 
@@ -47,6 +48,43 @@ std::string step_line(const std::string& adjust, const SessionStep& step) {
                      centimetres(step.together_m) + " together;";
   for (const SessionError& session : step.sessions) line += " " + centimetres(session.alone_m);
   return line + "; held-out visit " + centimetres(step.held_out_m);
+}
+
+// Cost and error over the number of sessions, and what outdated landmarks leave.
+void write_session_charts(const std::filesystem::path& folder, const SessionStudy& study) {
+  std::vector<ChartSeries> cost;
+  std::vector<ChartSeries> error;
+  for (const SessionChain& chain : study.chains) {
+    ChartSeries seconds{chain.adjust, {}, {}, chain.adjust == "batch"};
+    ChartSeries centimetre = seconds;
+    for (const SessionStep& step : chain.steps) {
+      seconds.points.emplace_back(step.visit + 1, step.cpu_s);
+      if (step.together_m) centimetre.points.emplace_back(step.visit + 1, 100.0 * *step.together_m);
+    }
+    cost.push_back(std::move(seconds));
+    if (!centimetre.points.empty()) error.push_back(std::move(centimetre));
+  }
+  ChartSeries alone{"a map of this visit alone", {}, {}, true};
+  for (const SessionStep& step : study.chains.front().steps)
+    alone.points.emplace_back(step.visit + 1, step.alone_cpu_s);
+  cost.push_back(std::move(alone));
+  write_whole_file(folder / "cost.svg",
+                   chart_svg({"Processor time of one more session", "sessions", "CPU s"}, cost));
+  if (!error.empty())
+    write_whole_file(
+        folder / "error.svg",
+        chart_svg({"Median error of all sessions, one alignment", "sessions", "cm"}, error));
+  if (study.outdated.empty()) return;
+  ChartSeries right{"within 0.3 m of the truth", {}, {}, false};
+  ChartSeries wrong{"farther away", {}, {}, true};
+  for (const OutdatedStep& step : study.outdated) {
+    right.points.emplace_back(100.0 * step.share, 100.0 * step.right);
+    wrong.points.emplace_back(100.0 * step.share, 100.0 * step.wrong);
+  }
+  write_whole_file(folder / "outdated.svg",
+                   chart_svg({"Frames localised in an outdated map", "outdated landmarks [%]",
+                              "frames [%]", 0.0, 105.0},
+                             {right, wrong}));
 }
 
 void run_sessions(Console& console, const EvaluateCommand& command) {
@@ -94,6 +132,7 @@ void run_sessions(Console& console, const EvaluateCommand& command) {
                           {"orders_median_m", value_or_null(study.orders_median_m)},
                           {"orders_worst_m", value_or_null(study.orders_worst_m)},
                           {"outdated", outdated}};
+  write_session_charts(command.out, study);
   write_whole_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }

@@ -13,9 +13,19 @@
 namespace roadbook {
 namespace {
 
-// A place that many sessions have seen has more landmarks than a pose needs: those with the most
-// views from around stay, so that the time of a keyframe does not grow with the sessions.
-constexpr std::size_t kMostLandmarks = 1200;
+// A place that many sessions have passed has more keyframes and landmarks than a pose needs: those
+// near to it stay, and landmarks with the most views from there. So the time of a keyframe does not
+// grow with the sessions.
+NearLandmarksOptions near_in(const Map& map) {
+  constexpr std::size_t kMostLandmarks = 1200;
+  constexpr double kReachOfOneM = 8.0;
+  constexpr double kLeastReachM = 1.5;
+  NearLandmarksOptions near;
+  near.max_landmarks = kMostLandmarks;
+  near.reach_m = std::clamp(kReachOfOneM / static_cast<double>(map.sessions.size()), kLeastReachM,
+                            near.reach_m);
+  return near;
+}
 
 // The motion between two keyframes by odometry, as a prediction. Empty where it is not known.
 std::optional<PlanarMotion> predicted_motion(const VoKeyframe& from, const VoKeyframe& to) {
@@ -43,7 +53,7 @@ std::vector<LocalisedFrame> localise_keyframes(const MappingInput& drive,
                                                const Progress& progress) {
   const auto& keyframes = drive.odometry.keyframes;
   LocaliserOptions options;
-  options.fix.near.max_landmarks = kMostLandmarks;
+  options.fix.near = near_in(index.map());
   Localiser localiser(index, drive.half_rigs.front(), options);
   std::vector<LocalisedFrame> localised;
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
@@ -145,7 +155,7 @@ void localise_rest(const MappingInput& drive,
   constexpr double kWithinRad = 0.02;
   const Rig& rig = drive.half_rigs.front();
   FrameFixOptions options;
-  options.near.max_landmarks = kMostLandmarks;
+  options.near = near_in(index.map());
   options.use_prior = false;
   Matrix6d covariance = Matrix6d::Zero();
   covariance.diagonal() << Eigen::Vector3d::Constant(kWithinM * kWithinM),
