@@ -37,8 +37,8 @@ namespace roadbook {
 ///   lane (`_LANE` if there are several).
 /// - `nav2`: masks for Nav2's costmap filters, on one grid: `out`_keepout.pgm (nav2_keepout.hpp)
 ///   and, if the map has speeds, the speed mask `out`.pgm (nav2_speed.hpp). Each has a .yaml, and
-///   the parameters of its filter in `_filter.yaml`. With `layers` {"occupancy"}: the occupancy grid
-///   as maps of modes trinary and scale instead (nav2_occupancy.hpp).
+///   the parameters of its filter in `_filter.yaml`. With `layers` {"occupancy"}: the occupancy
+///   grid as maps of modes trinary and scale instead (nav2_occupancy.hpp).
 /// - `lanelet2`: lanes and turns as lanelets with speed limits, crossings as crosswalks, parking
 ///   spaces as areas (profile autoware: as its parking spaces and lots), in an OSM file; needs the
 ///   origin.

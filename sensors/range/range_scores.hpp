@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "sensors/range/range_fit.hpp"
+#include "sensors/range/range_mixture.hpp"
 
 namespace roadbook {
 
