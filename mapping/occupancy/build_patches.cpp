@@ -78,14 +78,15 @@ std::size_t add_ratio(PatchGrid& grid,
 }
 
 // Shortens the part of each beam that changes cells to the first surface that the readings agree
-// on. What a reading says of the ground behind a mapped surface is worth nothing: it has lost its
+// on. A reading gives no evidence about the ground behind a mapped surface: it has lost its
 // echo, or comes from another sensor.
 class KnownSurfaces {
  public:
   KnownSurfaces(const PatchGrid& first, const InverseRangeModel& inverse)
       : first_(first), threshold_(log_odds(kOccupied) - inverse.prior_log_odds()) {}
 
-  /// Distance along the beam behind which nothing changes [m]; the reading where there is none.
+  /// Distance along the beam behind which nothing changes [m]; the reading if no surface is before
+  /// it.
   [[nodiscard]] double limit_m(const Eigen::Vector2d& origin,
                                const Eigen::Vector2d& along,
                                double read_m) const {

@@ -6,7 +6,7 @@ namespace roadbook {
 // "Probabilistic grid mapping".
 
 /// Naive rule: states and readings are free (0), unknown (0.5) or occupied (1). A free cell stays
-/// free. It is wrong for any sensor that errs, and serves as a demonstration.
+/// free. It is wrong for any sensor with errors, and serves as a demonstration.
 [[nodiscard]] double naive_update(double cell, double reading);
 
 /// Log odds of a probability.

@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-/// A pose in the plane: what is left of a vehicle pose seen from above.
+/// A pose in the plane: a vehicle pose seen from above.
 struct PlanePose {
   double x_m = 0.0;
   double y_m = 0.0;

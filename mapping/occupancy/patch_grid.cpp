@@ -27,7 +27,7 @@ int steps_within(double value, double slope, int cells, int count) {
 
 using PairOfFloats = float __attribute__((vector_size(8)));
 
-// The hot loop: bench/occupancy_bench.cpp measures it beside a plain Bresenham line. Both numbers
+// The hot loop: bench/occupancy_bench.cpp compares it with a plain Bresenham line. Both numbers
 // of a cell are loaded, added and stored together.
 ROADBOOK_CLONES
 void add_row(OccupancyCell* cells, const BeamSteps& steps, const float* row) {

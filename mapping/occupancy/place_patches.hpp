@@ -20,7 +20,7 @@ struct OccupancyGrid {
   std::vector<float> effective;      ///< number of independent readings
   std::vector<std::uint8_t> drives;  ///< drives that saw the cell
   std::vector<std::int32_t> newest;  ///< number of the patch seen last, by time; -1: none
-  std::size_t moved = 0;             ///< patches placed anew
+  std::size_t moved = 0;             ///< patches placed again
   std::size_t without_pose = 0;      ///< patches whose pose the map no longer has; left out
 
   /// Probability that the cell is occupied. `prior_log_odds`: before any reading.
@@ -40,12 +40,12 @@ inline constexpr double kOccupiedProbability = 0.65;
   return probability + 2.0 * sigma < kFreeProbability;
 }
 
-/// T_map_vehicle of the keyframe of a session at a stamp; empty if the map has none.
+/// T_map_vehicle of the keyframe of a session at a stamp; empty if the map does not have it.
 using PoseOfKeyframe =
     std::function<std::optional<PlanePose>(const std::string& session, std::int64_t t_ns)>;
 
 /// Adds up the patches. A patch whose pose moved by more than a quarter of a cell, at any corner,
-/// is placed anew (`OccupancyPatch::placed`); others stay where they were drawn. Patches must have
+/// is placed again (`OccupancyPatch::placed`); others stay where they were drawn. Patches must have
 /// one cell size. `temper`: of each drive. Linear in the cells of all patches: 1,000 patches of 200
 /// x 200 cells take less than a second.
 [[nodiscard]] OccupancyGrid place_patches(std::vector<OccupancyPatch>& patches,

@@ -10,7 +10,7 @@ namespace roadbook {
 
 // The grid's filter takes all readings of a cell for independent. They are not: neighbouring scans
 // see a cell from nearly the same place, and an edge that covers a part of a cell, or a wide beam,
-// errs in the same way each time. Source: document 001, "Summary II".
+// has the same error each time. Source: document 001, "Summary II".
 
 struct ReadingDependence {
   std::vector<double> autocorrelation;  ///< of the innovations of a cell, from lag 1

@@ -67,10 +67,14 @@ struct ScannedPlace {
   [[nodiscard]] fs::path table() const { return drive / "range0" / "data.csv"; }
 };
 
-// Replaces the first line that begins with the first reading's stamp and beam 5.
+constexpr int kLastOfFirstScan = 42;  // line of beam 40; the header is line 1
+
+// Replaces beam and range of that line. Beams of one stamp must ascend, so that only the last may
+// have a larger number.
 void write_reading(const fs::path& table, const std::string& beam, const std::string& range) {
   std::string text = read_regular_file(table, "a table");
-  const auto line = text.find('\n') + 1;
+  std::size_t line = 0;
+  for (int i = 1; i < kLastOfFirstScan; ++i) line = text.find('\n', line) + 1;
   const auto stamp_end = text.find(',', line);
   const auto end = text.find('\n', line);
   text.replace(stamp_end, end - stamp_end, "," + beam + "," + range);
@@ -124,21 +128,22 @@ TEST(MakeOccupancy, BadReadingsAreNamedWithFileAndLine) {
   const std::string good = read_regular_file(place.table(), "a table");
   const auto problem_of = [&](const std::string& beam, const std::string& range) {
     write_reading(place.table(), beam, range);
-    place.write_map(8.0);  // the drive has another digest now
-    const Problem problem =
-        thrown_problem([&] { (void)make_occupancy(place.request(), messages); });
+    const Problem problem = thrown_problem([&] {
+      place.write_map(8.0);  // the drive has another digest now
+      (void)make_occupancy(place.request(), messages);
+    });
     std::ofstream(place.table(), std::ios::binary) << good;
     return problem;
   };
-  const Problem far = problem_of("0", "10.5");
+  const Problem far = problem_of("40", "10.5");
   EXPECT_EQ(far.file, place.table().string());
-  EXPECT_EQ(far.line, 2);
+  EXPECT_EQ(far.line, kLastOfFirstScan);
   EXPECT_EQ(far.field, "range");
   EXPECT_NE(far.want.find("10.000"), std::string::npos);
   const Problem beam = problem_of("41", "5.0");
   EXPECT_EQ(beam.field, "beam");
-  EXPECT_EQ(beam.line, 2);
-  EXPECT_EQ(problem_of("0", "nan").line, 2);
+  EXPECT_EQ(beam.line, kLastOfFirstScan);
+  EXPECT_EQ(problem_of("40", "nan").line, kLastOfFirstScan);
 }
 
 TEST(MakeOccupancy, RefusesWhatItCannotMap) {
