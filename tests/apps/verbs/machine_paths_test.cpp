@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 class MachinePaths : public ::testing::Test {
  protected:
-  // Two visits, the first with damage that every map warns of: an image is missing.
+  // Two visits, the first with damage that a map of it warns of: an image is missing.
   MachinePaths() {
     for (const std::string visit : {"0", "1"})
       run("simulate zurich --size small --visit " + visit +
@@ -50,8 +50,8 @@ class MachinePaths : public ::testing::Test {
 
 TEST_F(MachinePaths, AreInNoMapWhateverVerbHasWrittenToIt) {
   const std::string map = " -m " + path("place.gpkg");
-  run("map " + path("visit0") + map);
   run("map " + path("visit1") + map);
+  run("map " + path("visit0") + map);
   run("overhead --resolution-m 0.05" + map);
   run("roads" + map);
   run("speeds --truth" + map);
