@@ -196,8 +196,11 @@ JoinedSession join_session(const Map& map,
   std::vector<bool> has_landmark;
   add(matches_of_localisation(drive, placed, track_of_landmark,
                               static_cast<int>(joined.first_keyframe), has_landmark));
-  add(matches_in_map_images(joined, first_track, has_landmark, options));
-  add(matches_of_loops(joined, placed.loops));
+  // These may show that two landmarks are one, which a map that stays as it is cannot take up.
+  if (options.adjust != SessionAdjust::kNone) {
+    add(matches_in_map_images(joined, first_track, has_landmark, options));
+    add(matches_of_loops(joined, placed.loops));
+  }
   joined.tracks = join_tracks(joined.input.odometry, same);
   const auto landmarks = landmarks_of_tracks(map, joined.tracks);
   parallel_for_small(joined.tracks.size(), options.num_threads, [&](std::size_t t) {
