@@ -18,8 +18,8 @@ struct FurtherDrives {
 };
 
 /// Returns the drives of `given` by which the map in `map_file` is to be extended. The first of
-/// `given` may be the last sessions of the map, or all of them: a command that was stopped goes on,
-/// and one that is done has nothing left. Throws BadInput if a drive is given twice, under whatever
+/// `given` may be the last sessions of the map, or all of them: a stopped command continues, and a
+/// finished one has nothing left. Throws BadInput if a drive is given twice, under whatever
 /// names, or is another session of the map; also if the map is damaged.
 [[nodiscard]] FurtherDrives further_drives(const std::filesystem::path& map_file,
                                            const std::vector<std::filesystem::path>& given,

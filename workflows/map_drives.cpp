@@ -53,21 +53,13 @@ MapResult extended_by(const std::vector<std::filesystem::path>& drives,
   return result;
 }
 
-// A drive that the map was last extended by, with the same options, needs nothing.
-bool is_done(const std::filesystem::path& map,
-             const std::filesystem::path& drive,
-             const MapOptions& options) {
-  std::vector<Drive> drives;
-  drives.push_back(Drive::open(drive));
-  return is_extended_by(map, drives, options);
-}
-
 MapResult made_map(const MapRequest& request, const MapOptions& options, Messages& messages) {
   if (options.replace) refuse_same_drives(request.drives);
   if (!options.replace && !request.batch) {
     const FurtherDrives further = further_drives(request.map, request.drives, messages);
     if (!further.drives.empty()) return extended_by(further.drives, request, options, messages);
-    if (!further.is_new && is_done(request.map, request.drives.back(), options))
+    // With the options of before nothing is left to do; with others the extension is refused.
+    if (!further.is_new && was_extended(request.map))
       return extended_by({request.drives.back()}, request, options, messages);
   }
   const auto drives =
@@ -90,8 +82,8 @@ MapResult map_drives(const MapRequest& request, Messages& messages) {
   } else if (request.adjust) {
     options.adjust = *request.adjust;
   }
-  if (!options.session_name.empty() && request.drives.size() > 1)
-    throw InvalidOption("--as", options.session_name, "a name for one drive");
+  if (!options.session_name.empty() && (request.drives.size() > 1 || request.batch))
+    throw InvalidOption("--as", options.session_name, "a name for one drive, without --batch");
   if (request.equal_rows) options.rows_digest = digest_of_labels(request.map);
   options.check_what_goes = [&](const ExistingMap& m) { check_labels_stay(request.map, m); };
   std::optional<Problem> lost_places;

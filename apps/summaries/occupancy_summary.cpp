@@ -131,7 +131,7 @@ void print_occupancy(const Console& console, const OccupancyResult& result) {
   }
   if (result.grid.without_pose > 0)
     console.note(std::to_string(result.grid.without_pose) +
-                 " patches hang on poses that the map no longer has; they are left out");
+                 " patches belong to poses that the map no longer has; they are left out");
   say_demands(console, result);
   Json json{
       {"scans", scans},

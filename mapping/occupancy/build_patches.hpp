@@ -37,10 +37,10 @@ struct BuiltPatches {
   std::size_t updates = 0;  ///< changes of cells
 };
 
-/// The readings of a drive as patches. Scans are grouped along the way; each group hangs on the
-/// anchor of its middle scan. `anchor_of[i]`: index in `anchors` of the anchor nearest to scan i.
-/// Patches are aligned with the cells of the map, so that they are drawn without resampling until
-/// the map moves. The result does not depend on the number of threads. Throws InvalidOption.
+/// The readings of a drive as patches. Scans are grouped along the way; each group belongs to
+/// the anchor of its middle scan. `anchor_of[i]`: index in `anchors` of the anchor nearest to scan
+/// i. Patches are aligned with the cells of the map, so that they are drawn without resampling
+/// until the map moves. The result does not depend on the number of threads. Throws InvalidOption.
 [[nodiscard]] BuiltPatches build_patches(std::span<const RangeScan> scans,
                                          std::span<const std::size_t> anchor_of,
                                          const std::vector<PatchAnchor>& anchors,

@@ -28,8 +28,8 @@ struct PlanePose {
   return {T.translation().x(), T.translation().y(), std::atan2(T(1, 0), T(0, 0))};
 }
 
-/// A part of the occupancy grid that hangs on a vehicle pose of the map. If the map moves the pose,
-/// the patch moves with it. Row 0 has the least y of the patch's frame.
+/// A part of the occupancy grid, stored relative to a vehicle pose of the map. If the map moves the
+/// pose, the patch moves with it. Row 0 has the least y of the patch's frame.
 struct OccupancyPatch {
   std::string session;        ///< of the pose
   std::int64_t t_ns = 0;      ///< stamp of the pose, a keyframe

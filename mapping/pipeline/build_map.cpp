@@ -1,7 +1,6 @@
 #include "mapping/pipeline/build_map.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "drive/drive.hpp"
@@ -157,18 +156,8 @@ void build_from(const std::vector<Drive>& drives,
   auto adjusted = clock.run("bundle adjustment",
                             [&] { return adjust(input, loops, relaxed, options, progress); });
 
-  const auto suspects = clock.run("cameras", [&] {
-    summary.cameras = camera_figures(input, drives, adjusted.stage, adjusted.result);
-    CameraDoubtOptions doubt;
-    doubt.num_threads = options.num_threads;
-    const auto found = doubt_cameras(input, adjusted.T_map_vehicle, doubt);
-    const auto doubts = to_problems(found, drives);
-    const auto idle = warnings_of_idle_cameras(summary.cameras, input, gate, options.gate);
-    summary.warnings.insert(summary.warnings.end(), idle.begin(), idle.end());
-    summary.warnings.insert(summary.warnings.end(), doubts.begin(), doubts.end());
-    require_evidence(input, adjusted, summary.cameras, doubts, gate, options.gate);
-    return found;
-  });
+  const auto suspects = clock.run(
+      "cameras", [&] { return judge_cameras(input, drives, adjusted, gate, options, summary); });
   clock.run("covariances", [&] {
     add_covariances(input, relaxed, common_errors_of(suspects, input, adjusted.stage), options,
                     adjusted);
@@ -199,10 +188,7 @@ void build_from(const std::vector<Drive>& drives,
     build.finish(map, meta, finish);
     return 0;
   });
-  const auto names_now = layer_names(map_path);
-  std::set_difference(names_before.begin(), names_before.end(), names_now.begin(), names_now.end(),
-                      std::back_inserter(summary.dropped));
-  summary.digest = load_meta(map_path).digest;
+  add_dropped(names_before, map_path, summary);
 }
 
 }  // namespace
@@ -214,14 +200,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   options.check();
   MapSummary summary;
   StageClock clock(summary.stages);
-  const auto drives = clock.run("open", [&] {
-    std::vector<Drive> opened;
-    for (const auto& folder : folders) {
-      opened.push_back(Drive::open(folder));
-      if (!options.model.empty()) opened.back().correct(options.model);
-    }
-    return opened;
-  });
+  const auto drives = clock.run("open", [&] { return open_drives(folders, options.model); });
   try {
     build_from(drives, folders, map_path, options, progress, clock, summary);
   } catch (const Refused& refusal) {

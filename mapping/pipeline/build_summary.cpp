@@ -1,8 +1,11 @@
 #include "mapping/pipeline/build_summary.hpp"
 
 #include <algorithm>
+#include <iterator>
 
+#include "mapping/layers/map_layers.hpp"
 #include "mapping/pieces.hpp"
+#include "mapping/store/map_file.hpp"
 #include "vo/track_options.hpp"
 
 namespace roadbook {
@@ -51,6 +54,15 @@ void add_truth_errors(const std::vector<DriveTruth>& truths, const Map& map, Map
     session.ate_p95_m = found->error.p95_m;
     session.offset = found->offset;
   }
+}
+
+void add_dropped(const std::vector<std::string>& names_before,
+                 const std::filesystem::path& file,
+                 MapSummary& summary) {
+  const auto names_now = layer_names(file);
+  std::set_difference(names_before.begin(), names_before.end(), names_now.begin(), names_now.end(),
+                      std::back_inserter(summary.dropped));
+  summary.digest = load_meta(file).digest;
 }
 
 void add_reprojection(const BundleResult& result, MapSummary& summary) {

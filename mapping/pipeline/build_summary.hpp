@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -78,6 +79,11 @@ void add_warnings_of(const std::vector<Drive>& drives, MapSummary& summary);
 
 /// Compares the map with the truths of its sessions, in their order.
 void add_truth_errors(const std::vector<DriveTruth>& truths, const Map& map, MapSummary& summary);
+
+/// Names the layers and tables in `names_before` that the map in `file` lacks, and its digest.
+void add_dropped(const std::vector<std::string>& names_before,
+                 const std::filesystem::path& file,
+                 MapSummary& summary);
 
 /// The error of the key points that fit, of the full-size images.
 void add_reprojection(const BundleResult& result, MapSummary& summary);

@@ -6,6 +6,16 @@
 
 namespace roadbook {
 
+std::vector<Drive> open_drives(const std::vector<std::filesystem::path>& folders,
+                               const EffectSizes& model) {
+  std::vector<Drive> opened;
+  for (const auto& folder : folders) {
+    opened.push_back(Drive::open(folder));
+    if (!model.empty()) opened.back().correct(model);
+  }
+  return opened;
+}
+
 VoResult odometry_of(const Drive& drive,
                      const OwnCar& car,
                      std::size_t index,
@@ -42,12 +52,30 @@ Problem short_segments_warning(const Drive& drive, int keyframes) {
           "images without gaps"};
 }
 
+std::vector<CameraDoubt> judge_cameras(const MappingInput& input,
+                                       const std::vector<Drive>& drives,
+                                       const Adjusted& adjusted,
+                                       const GateInputs& gate,
+                                       const MapOptions& options,
+                                       MapSummary& summary) {
+  summary.cameras = camera_figures(input, drives, adjusted.stage, adjusted.result);
+  CameraDoubtOptions doubt;
+  doubt.num_threads = options.num_threads;
+  auto found = doubt_cameras(input, adjusted.T_map_vehicle, doubt);
+  const auto doubts = to_problems(found, drives);
+  const auto idle = warnings_of_idle_cameras(summary.cameras, input, gate, options.gate);
+  summary.warnings.insert(summary.warnings.end(), idle.begin(), idle.end());
+  summary.warnings.insert(summary.warnings.end(), doubts.begin(), doubts.end());
+  require_evidence(input, adjusted, summary.cameras, doubts, gate, options.gate);
+  return found;
+}
+
 Session session_of(const Drive& drive,
                    const OwnCar& car,
                    const MapOptions& options,
                    const std::filesystem::path& map) {
   Session session;
-  session.name = drive.name();
+  session.name = options.session_name.empty() ? drive.name() : options.session_name;
   session.drive_path = path_from_map(drive.folder(), map);
   session.drive_digest = drive.digest();
   session.rig = drive.rig();

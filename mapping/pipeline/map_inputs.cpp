@@ -45,7 +45,8 @@ std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& optio
 std::string map_inputs(const std::vector<Drive>& drives, const MapOptions& options) {
   Sha256 digest;
   digest.update(inputs_key(drives, options) + " " + std::to_string(kMapSchemaVersion) + " " +
-                options.rows_digest + (options.gate.apart ? " apart" : ""));
+                options.rows_digest + (options.gate.apart ? " apart" : "") +
+                (options.session_name.empty() ? "" : " as " + options.session_name));
   return digest.hex();
 }
 
@@ -53,7 +54,7 @@ std::string map_inputs(const std::vector<Drive>& drives, const MapOptions& optio
 std::string extension_inputs(const std::vector<Drive>& drives, const MapOptions& options) {
   Sha256 digest;
   digest.update(map_inputs(drives, options) + " adjust " +
-                std::to_string(static_cast<int>(options.adjust)) + " as " + options.session_name);
+                std::to_string(static_cast<int>(options.adjust)));
   return digest.hex();
 }
 
@@ -162,6 +163,12 @@ bool is_extended_by(const std::filesystem::path& file,
                     const std::vector<Drive>& drives,
                     const MapOptions& options) {
   return meta_has(file, {{kExtension, extension_inputs(drives, options)}});
+}
+
+bool was_extended(const std::filesystem::path& file) {
+  const auto values = load_meta(file).values;
+  const auto found = values.find(kExtension);
+  return found != values.end() && !found->second.empty();
 }
 
 std::string extension_checkpoint_key(const std::string& map_digest,

@@ -60,6 +60,9 @@ namespace roadbook {
                                   const std::vector<Drive>& drives,
                                   const MapOptions& options);
 
+/// Whether the map's last session came by extending it, not by a build.
+[[nodiscard]] bool was_extended(const std::filesystem::path& file);
+
 /// Key of the checkpoints of an extension of the map with `map_digest`.
 [[nodiscard]] std::string extension_checkpoint_key(const std::string& map_digest,
                                                    const std::vector<Drive>& drives,

@@ -55,7 +55,7 @@ struct MapOptions {
   EffectSizes model;     ///< known imperfections; corrected in rig and readings before mapping
   bool replace = false;  ///< overwrite a map of other drives
   SessionAdjust adjust = SessionAdjust::kNear;  ///< by `extend_map`
-  std::string session_name;  ///< of the drive, by `extend_map`; empty: that of its folder
+  std::string session_name;                     ///< of a single drive; empty: that of its folder
   /// Tables of the existing map that the new map takes over (MapFinishOptions).
   std::vector<std::string> keep_tables;
   /// Tables taken over only if the new map begins with all drives of the existing map.

@@ -1,15 +1,11 @@
 #include "mapping/sessions/extend_map.hpp"
 
-#include <algorithm>
-#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/format.hpp"
 #include "base/index.hpp"
-#include "mapping/cameras/camera_doubts.hpp"
 #include "mapping/cameras/common_camera_errors.hpp"
 #include "mapping/localisation/landmark_index.hpp"
 #include "mapping/pieces.hpp"
@@ -27,7 +23,6 @@
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_lock.hpp"
-#include "vo/own_car_mask.hpp"
 
 namespace roadbook {
 namespace {
@@ -54,6 +49,19 @@ void renew_path(const Map& map, const Drive& drive, const std::filesystem::path&
   MapUpdate update(file);
   update.set_drive_paths(paths);
   update.commit();
+}
+
+// What holds the map where it is, in words for `map_meta`.
+std::string gauge_of(SessionAdjust adjust) {
+  switch (adjust) {
+    case SessionAdjust::kNear:
+      return "poses of the map away from the last session fixed";
+    case SessionAdjust::kAll:
+      return "weak prior on the poses of the first session";
+    case SessionAdjust::kNone:
+      return "all poses and landmarks before the last session fixed";
+  }
+  return {};
 }
 
 void require_place(const PlacedSession& placed,
@@ -86,7 +94,8 @@ std::vector<DriveTruth> truths_of(const Map& map,
     const auto folder = (map_path.parent_path() / map.sessions[s].drive_path).lexically_normal();
     if (!std::filesystem::is_directory(folder)) continue;
     try {
-      truths[s] = truth_of_drive(Drive::open(folder));
+      const Drive earlier = Drive::open(folder);
+      if (earlier.digest() == map.sessions[s].drive_digest) truths[s] = truth_of_drive(earlier);
     } catch (const BadInput&) {
       continue;  // its truth is missing in the summary, nothing else needs it
     }
@@ -154,9 +163,10 @@ void extend_from(const std::vector<Drive>& drives,  // one
   }
   for (const Session& session : map.sessions)
     if (session.drive_digest == drive.digest())
-      throw BadInput({Severity::kError, folder.string(), 0, "drive",
-                      "session " + session.name + " of " + map_path.string(),
-                      "drives that the map lacks"});
+      throw BadInput(
+          {Severity::kError, folder.string(), 0, "drive",
+           "session " + session.name + " of " + map_path.string() + ", added with other options",
+           "a drive that the map lacks, or --batch to build the map again"});
   const std::string before = load_meta(map_path).digest;
   const std::string key = extension_checkpoint_key(before, drives, options);
   const auto keep_tables = tables_of_extension(map_path, map, options, summary);
@@ -192,15 +202,7 @@ void extend_from(const std::vector<Drive>& drives,  // one
 
   const auto suspects = clock.run("cameras", [&] {
     const Adjusted alone = session_alone(joined, adjusted);
-    summary.cameras = camera_figures(input, drives, alone.stage, alone.result);
-    CameraDoubtOptions doubt;
-    doubt.num_threads = options.num_threads;
-    const auto found = doubt_cameras(input, alone.T_map_vehicle, doubt);
-    const auto doubts = to_problems(found, drives);
-    const auto idle = warnings_of_idle_cameras(summary.cameras, input, gate, options.gate);
-    summary.warnings.insert(summary.warnings.end(), idle.begin(), idle.end());
-    summary.warnings.insert(summary.warnings.end(), doubts.begin(), doubts.end());
-    require_evidence(input, alone, summary.cameras, doubts, gate, options.gate);
+    const auto found = judge_cameras(input, drives, alone, gate, options, summary);
     return common_errors_of(found, input, alone.stage);
   });
   clock.run("covariances", [&] {
@@ -209,8 +211,9 @@ void extend_from(const std::vector<Drive>& drives,  // one
   });
   const Map extended = clock.run("assemble", [&] {
     Session session = session_of(drive, car, options, map_path);
-    if (!options.session_name.empty()) session.name = options.session_name;
-    if (!has_wheels) ground_sigma = ground_sigma.value_or(map.sessions.front().scale_sigma);
+    // Without a scale of its own, the drive has that of the landmarks in which it was localised.
+    session.scale_source = map.sessions.front().scale_source;
+    session.scale_sigma = map.sessions.front().scale_sigma;
     set_scale(adjusted, map.sessions.size(), has_wheels ? std::nullopt : ground_sigma, session);
     session.localised_share = placed.localised_share();
     Map assembled = extended_map(map, session, joined, placed, adjusted, options);
@@ -234,17 +237,12 @@ void extend_from(const std::vector<Drive>& drives,  // one
     finish.keep_other_layers = options.adjust == SessionAdjust::kNone;
     if (options.more_layers) finish.layers = options.more_layers(extended);
     auto meta = extension_meta(map_path, drives, options);
-    meta["gauge"] =
-        "first keyframe of each piece fixed by the first build; weak prior of 0.3 m on "
-        "the poses of the first session since";
+    meta["gauge"] = gauge_of(options.adjust);
     if (summary.components > 1) meta[kPiecesKey] = std::to_string(summary.components);
     build.finish(extended, meta, finish);
     return 0;
   });
-  const auto names_now = layer_names(map_path);
-  std::set_difference(names_before.begin(), names_before.end(), names_now.begin(), names_now.end(),
-                      std::back_inserter(summary.dropped));
-  summary.digest = load_meta(map_path).digest;
+  add_dropped(names_before, map_path, summary);
 }
 
 }  // namespace
@@ -256,12 +254,7 @@ MapSummary extend_map(const std::filesystem::path& folder,
   options.check();
   MapSummary summary;
   StageClock clock(summary.stages);
-  const auto drives = clock.run("open", [&] {
-    std::vector<Drive> opened;
-    opened.push_back(Drive::open(folder));
-    if (!options.model.empty()) opened.front().correct(options.model);
-    return opened;
-  });
+  const auto drives = clock.run("open", [&] { return open_drives({folder}, options.model); });
   try {
     extend_from(drives, folder, map_path, options, progress, clock, summary);
   } catch (const Refused& refusal) {

@@ -11,9 +11,9 @@ namespace roadbook {
 /// The map with a further session. The caller completes its `session`.
 ///
 /// Map frames stay as they are. A keyframe of the session gets the nearest map frame of its piece
-/// within 2 m; where there is none, its own pose becomes a map frame. Poses and landmarks that the
-/// adjustment did not move keep their numbers, bit for bit. Landmarks keep their order, new ones
-/// follow. Each localised keyframe gives a loop from the nearest keyframe of the map.
+/// within 2 m; farther away from all map frames, its own pose becomes one. Poses and landmarks that
+/// the adjustment did not move keep their numbers, bit for bit. Landmarks keep their order, new
+/// ones follow. Each localised keyframe gives a loop from the nearest keyframe of the map.
 [[nodiscard]] Map extended_map(const Map& map,
                                const Session& session,
                                const JoinedSession& joined,

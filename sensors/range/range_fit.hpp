@@ -17,9 +17,9 @@ struct RangeFitOptions {
   /// Starting points (noise and rate of short readings); the fit with the greatest likelihood
   /// counts. 1: the nominal one alone.
   int starts = 1;
-  /// Whether the fit goes on, with steps of Newton's method (BHHH), until the likelihood is at its
-  /// maximum, and estimates the standard errors of all parameters together. Without it the fit ends
-  /// when the shares have settled, and standard errors are those of the shares.
+  /// Whether the fit continues with steps of Newton's method (BHHH) to the maximum of the
+  /// likelihood, and estimates the standard errors of all parameters together. Without it the fit
+  /// ends when the shares have settled, and standard errors are those of the shares.
   bool to_the_maximum = false;
   /// Readings within this time depend on each other; standard errors take this into account [s].
   double block_s = 1.0;

@@ -19,7 +19,7 @@ struct SessionStudyOptions {
   std::string size = "full";     ///< full, small
   double image_scale = 1.0;
   int visits = 7;        ///< sessions of the map, and one more that is only localised
-  int order_visits = 4;  ///< all orders of so many visits are built
+  int order_visits = 4;  ///< number of visits whose orders are built
   int orders = 24;       ///< at most
   std::uint64_t seed = 1;
   int num_threads = 0;
@@ -53,8 +53,8 @@ struct SessionChain {
   std::vector<SessionStep> steps;
 };
 
-/// A visit localised in a map of which a share of the landmarks is outdated: they look like another
-/// landmark of the map now.
+/// A visit localised in an outdated map: a share of its landmarks has the descriptors of other
+/// landmarks.
 struct OutdatedStep {
   double share = 0.0;
   double localised = 0.0;  ///< share of the frames

@@ -147,7 +147,7 @@ TEST(MapOfFurtherDrives, IsExtendedWithoutItsRecordings) {
     EXPECT_EQ(done.status, 0) << done.err;
     EXPECT_EQ(nlohmann::json::parse(done.out).at("unchanged"), true) << again;
   }
-  // A command that was stopped after its first drive goes on with the second.
+  // A command that was stopped after its first drive continues with the second.
   fs::copy_file(folder.path() / "before.gpkg", folder.path() / "place.gpkg",
                 fs::copy_options::overwrite_existing);
   ASSERT_EQ(run("visit1").status, 0);
@@ -167,6 +167,7 @@ TEST(MapOfFurtherDrives, IsExtendedWithoutItsRecordings) {
   refused("visit2 --batch", 2, "drive of session visit0: got no such folder");
   refused("visit2 --adjust much", 1, "--adjust");
   refused("visit1 visit2 --as tuesday", 1, "--as: got tuesday, want a name for one drive");
+  refused("visit2 --adjust all", 2, "added with other options, want a drive that the map lacks");
   refused("visit2 --adjust near --equal-rows", 1, "want --adjust all");
 }
 
