@@ -30,6 +30,7 @@ Verb simulate_verb();
 Verb check_verb();
 Verb import_verb();
 Verb map_verb();
+Verb calibrate_verb();
 Verb localise_verb();
 Verb overhead_verb();
 Verb label_verb();

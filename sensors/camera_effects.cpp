@@ -13,8 +13,12 @@ MountedCamera apply_camera_effects(const MountedCamera& nominal, const EffectSiz
   for (std::size_t i = focal + 2; i < focal + 4; ++i) q[i] += size("centre");
   const bool double_sphere = nominal.camera.model == CameraModel::kDoubleSphere;
   q[double_sphere ? 1 : focal + 4] += size("distortion");
-  real.T_vehicle_camera.linear() *=
-      Eigen::AngleAxisd(size("rotation"), Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const auto turn = [&](const char* effect, const Eigen::Vector3d& axis) {
+    real.T_vehicle_camera.linear() *= Eigen::AngleAxisd(size(effect), axis).toRotationMatrix();
+  };
+  turn("rotation", Eigen::Vector3d::UnitY());
+  turn("pitch", Eigen::Vector3d::UnitX());
+  turn("roll", Eigen::Vector3d::UnitZ());
   real.T_vehicle_camera.translation().x() += size("position");
   return real;
 }

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kWindowS = 0.4;
 
-constexpr std::array kRigEffects{"focal", "centre", "distortion", "rotation", "position"};
+constexpr std::array kRigEffects{"focal", "centre", "distortion", "rotation",
+                                 "pitch", "roll",   "position"};
 constexpr std::array kNoise{"outliers", "variance(speed)", "variance(turn)", "correlation"};
 constexpr std::array kStreamEffects{
     "wheels0.left_radius",       "wheels0.right_radius", "wheels0.radius",

@@ -261,8 +261,13 @@ std::vector<Problem> to_problems(const std::vector<CameraDoubt>& doubts,
   for (const CameraDoubt& doubt : doubts) {
     const Drive& drive = drives[static_cast<std::size_t>(doubt.session)];
     const std::string& name = drive.rig().cameras[static_cast<std::size_t>(doubt.camera)].name;
+    // Positions and principal points are no columns of a calibration; exchanged images have no
+    // sizes.
+    const bool measured =
+        doubt.field == "rotation" || doubt.field == "focal length" || doubt.field == "time_offset";
     problems.push_back({Severity::kWarning, (drive.folder() / name).string(), 0, doubt.field,
-                        doubt.got, doubt.want});
+                        doubt.got,
+                        doubt.want + (measured ? "; `roadbook calibrate` measures it" : "")});
   }
   return problems;
 }
