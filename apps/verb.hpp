@@ -31,6 +31,8 @@ Verb check_verb();
 Verb import_verb();
 Verb map_verb();
 Verb calibrate_verb();
+Verb curate_verb();
+Verb edit_verb();
 Verb localise_verb();
 Verb overhead_verb();
 Verb label_verb();

@@ -10,6 +10,8 @@
 #include "semantics/labels/label_layers.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "semantics/labels/space_rows.hpp"
+#include "workflows/edits/edit_map.hpp"
+#include "workflows/edits/edit_record.hpp"
 #include "workflows/further_drives.hpp"
 #include "workflows/settings/effect_model.hpp"
 
@@ -64,7 +66,12 @@ MapResult made_map(const MapRequest& request, const MapOptions& options, Message
   }
   const auto drives =
       options.replace ? request.drives : with_drives_of_map(request.map, request.drives, messages);
-  return {build_map(drives, request.map, options, messages.progress()), {}, drives};
+  MapResult result{build_map(drives, request.map, options, messages.progress()), {}, drives};
+  if (repeat_edits(request.map, options.num_threads, messages)) {
+    messages.note("the edits of the map were made again");
+    result.summary.digest = load_meta(request.map).digest;
+  }
+  return result;
 }
 
 }  // namespace
@@ -73,6 +80,7 @@ MapResult map_drives(const MapRequest& request, Messages& messages) {
   const MapHold hold(request.map);  // what is read of the map stays true until it is written
   MapOptions options = request.options;
   options.keep_tables = measured_tables();
+  options.keep_tables.emplace_back(kEditTable);
   options.keep_tables_of_drives = learning_tables();
   if (request.equal_rows) {
     // Rows are one prior of all poses.

@@ -7,6 +7,7 @@
 #include "base/format.hpp"
 #include "drive/check.hpp"
 #include "mapping/store/map_check.hpp"
+#include "workflows/deep_map_check.hpp"
 
 namespace roadbook {
 namespace {
@@ -40,8 +41,8 @@ ExitStatus check_recording(const std::filesystem::path& folder, Console& console
   return status_of(report.problems);
 }
 
-ExitStatus check_file(const std::filesystem::path& file, Console& console) {
-  const MapReport report = check_map(file);
+ExitStatus check_file(const std::filesystem::path& file, bool deep, int threads, Console& console) {
+  const MapReport report = deep ? check_map_deep(file, threads, console) : check_map(file);
   for (const auto& [table, rows] : report.rows)
     console.say(table + ": " + std::to_string(rows) + " rows");
   say_verdict(console, report.problems);
@@ -66,14 +67,19 @@ ExitStatus check_nothing(const std::filesystem::path& path, Console& console) {
 
 Verb check_verb() {
   auto path = std::make_shared<std::filesystem::path>();
+  auto deep = std::make_shared<bool>(false);
   return {"check", "validates a drive or a map, in seconds",
-          [path](Options& options) {
+          [=](Options& options) {
             options.add("PATH", path.get(), "folder of a drive, or map file").required = true;
+            options.add("--deep", deep.get(),
+                        "also whether poses, landmarks, wheels and covariances of a map agree");
           },
-          [path](Console& console, const CommonOptions&) {
+          [=](Console& console, const CommonOptions& common) {
             if (!std::filesystem::exists(*path)) return check_nothing(*path, console);
-            return std::filesystem::is_directory(*path) ? check_recording(*path, console)
-                                                        : check_file(*path, console);
+            if (!std::filesystem::is_directory(*path))
+              return check_file(*path, *deep, common.threads, console);
+            if (*deep) throw InvalidOption("--deep", path->string() + ", a drive", "a map file");
+            return check_recording(*path, console);
           }};
 }
 

@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "apps/summaries/map_summary.hpp"
+#include "apps/summaries/remove_summary.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
 #include "mapping/store/map_file_lock.hpp"
@@ -22,10 +23,11 @@ Verb map_verb() {
   auto command = std::make_shared<MapRequest>();
   auto solver = std::make_shared<std::string>("own");
   auto adjust = std::make_shared<std::string>();
+  auto removal = std::make_shared<RemoveRequest>();
   return {
       "map", "builds a map from one drive or several",
       [=](Options& options) {
-        options.add("DRIVE", &command->drives, "recorded drives, oldest first").required = true;
+        options.add("DRIVE", &command->drives, "recorded drives, oldest first");
         options.add("--map,-m", &command->map, "map file to write, or to extend").required = true;
         options.add("--model", &command->model, "YAML file of known effects, which are corrected");
         add_vehicle_option(options, &command->vehicle);
@@ -42,9 +44,20 @@ Verb map_verb() {
         options.add("--as", &command->options.session_name, "name of the session");
         options.add("--replace", &command->options.replace,
                     "build a map of these drives alone, replacing an existing one");
+        options.add("--remove", &removal->session, "take the session of this name out of the map");
+        options.add("--drop-labels", &removal->drop_labels,
+                    "with --remove: delete labels that no earlier session shows");
         options.add("--seed", &command->options.seed, "seed of all random numbers");
       },
       [=](Console& console, const CommonOptions& common) {
+        if (command->drives.empty() == removal->session.empty())
+          throw InvalidOption("DRIVE", command->drives.empty() ? "none" : "drives with --remove",
+                              "drives to map, or --remove NAME");
+        if (!removal->session.empty()) {
+          removal->map = command->map;
+          print_removal(console, remove_session(*removal), removal->session);
+          return ExitStatus::kDone;
+        }
         command->options.num_threads = common.threads;
         if (*solver == "ceres") command->options.bundle.bundle.solver = LeastSquaresSolver::kCeres;
         command->adjust = session_adjust_from(*adjust);

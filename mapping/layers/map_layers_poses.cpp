@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/se3.hpp"
+#include "mapping/landmark_weights.hpp"
 
 namespace roadbook {
 namespace {
@@ -87,8 +88,10 @@ VectorLayer landmark_layer(const Map& map) {
   layer.type = GeometryType::kPointZ;
   layer.fields = {{"landmark", FieldType::kInteger}, {"sigma_m", FieldType::kReal},
                   {"views", FieldType::kInteger},    {"ground", FieldType::kInteger},
-                  {"date_utc", FieldType::kText},    {"sessions", FieldType::kText}};
+                  {"date_utc", FieldType::kText},    {"sessions", FieldType::kText},
+                  {"weight", FieldType::kReal}};
   const std::vector<Views> views = views_of(map);
+  const std::vector<double> weights = landmark_weights(map);
   for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
     const Landmark& l = map.landmarks[i];
     const Eigen::Vector3d p = map.p_map(l);
@@ -99,7 +102,8 @@ VectorLayer landmark_layer(const Map& map) {
                       views[i].count,
                       std::int64_t{l.ground ? 1 : 0},
                       FieldValue{},
-                      session_list(map, views[i].sessions)};
+                      session_list(map, views[i].sessions),
+                      weights[i]};
     if (views[i].count > 0) feature.values[4] = utc_text(views[i].newest_ns);
     layer.features.push_back(std::move(feature));
   }

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "mapping/landmark_weights.hpp"
 
 namespace roadbook {
 namespace {
@@ -44,24 +45,29 @@ void NearLandmarksOptions::check() const {
     throw InvalidOption("landmarks", std::to_string(max_landmarks), "at least 50");
 }
 
-LandmarkIndex::LandmarkIndex(const Map& map, const std::vector<std::string>& sessions)
+LandmarkIndex::LandmarkIndex(const Map& map,
+                             const std::vector<std::string>& sessions,
+                             double least_weight)
     : map_(map),
       landmarks_(map.landmarks.size()),
       seen_from_(map.keyframes.size()),
       viewers_(map.landmarks.size()),
       keyframes_(kCell) {
   const std::vector<char> chosen = chosen_sessions(map, sessions);
+  const std::vector<double> weights = landmark_weights(map);
   for (std::size_t i = 0; i < landmarks_.size(); ++i) {
     landmarks_[i].p_map = map.p_map(map.landmarks[i]);
     landmarks_[i].covariance = covariance_in_map(map, map.landmarks[i]);
+    landmarks_[i].weight = weights[i];
     landmarks_[i].nearest_m = std::numeric_limits<double>::max();
   }
   std::vector<std::vector<Eigen::Vector3d>> directions(landmarks_.size());
   for (const Observation& o : map.observations) {
     const Keyframe& keyframe = map.keyframes[at(o.keyframe)];
     if (!chosen[at(keyframe.session)]) continue;
-    const MountedCamera& mounted = map.sessions[at(keyframe.session)].rig.cameras[at(o.camera)];
     KnownLandmark& landmark = landmarks_[at(o.landmark)];
+    if (landmark.weight < least_weight) continue;
+    const MountedCamera& mounted = map.sessions[at(keyframe.session)].rig.cameras[at(o.camera)];
     const Eigen::Vector3d ray =
         map.T_map_vehicle(o.keyframe) * mounted.T_vehicle_camera.translation() - landmark.p_map;
     const double distance = ray.norm();
@@ -135,7 +141,7 @@ std::vector<int> LandmarkIndex::near(const Eigen::Isometry3d& T_map_vehicle,
     all.insert(all.end(), seen_from_[at(k)].begin(), seen_from_[at(k)].end());
   std::sort(all.begin(), all.end());
   struct Seen {
-    int views = 0;
+    double views = 0.0;  // times weight
     int landmark = 0;
   };
   std::vector<Seen> seen;
@@ -152,7 +158,7 @@ std::vector<int> LandmarkIndex::near(const Eigen::Isometry3d& T_map_vehicle,
         distance + 1.5 > landmark.nearest_m / options.distance_factor &&
         (distance < 3.0 || angle > 3.14 ||
          ray.dot(landmark.to_viewer) > std::cos(angle) * distance))
-      seen.push_back({static_cast<int>(end - i), all[i]});
+      seen.push_back({static_cast<double>(end - i) * landmark.weight, all[i]});
     i = end;
   }
   if (seen.size() > options.max_landmarks) {

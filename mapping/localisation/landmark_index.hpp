@@ -19,12 +19,13 @@ struct KnownLandmark {
   double least_cosine = 1.0;  ///< of the angle between `to_viewer` and one of these directions
   double nearest_m = 0.0;     ///< least distance from which a camera saw it
   double farthest_m = 0.0;    ///< largest such distance
-  bool used = false;          ///< seen by one of the chosen sessions
+  double weight = 1.0;        ///< probability that it is still there and can be seen
+  bool used = false;          ///< seen by one of the chosen sessions, and of enough weight
 };
 
 struct NearLandmarksOptions {
   double reach_m = 4.0;              ///< between the vehicle and the keyframes that saw a landmark
-  std::size_t max_landmarks = 3000;  ///< the ones with the most views from there stay
+  std::size_t max_landmarks = 3000;  ///< those with the most views from there, times weight, stay
   double angle_rad = 0.6;            ///< beyond the directions from which a landmark was seen
   double distance_factor = 2.0;      ///< beyond the distances from which it was seen
 
@@ -37,9 +38,12 @@ struct NearLandmarksOptions {
 /// safe to call concurrently.
 class LandmarkIndex {
  public:
-  /// `sessions`: names of the sessions whose views count; empty: all. Throws InvalidOption for a
-  /// name that the map does not have.
-  explicit LandmarkIndex(const Map& map, const std::vector<std::string>& sessions = {});
+  /// `sessions`: names of the sessions whose views count; empty: all. `least_weight`: landmarks of
+  /// less weight (`landmark_weights`) are not used. Throws InvalidOption for a name that the map
+  /// does not have.
+  explicit LandmarkIndex(const Map& map,
+                         const std::vector<std::string>& sessions = {},
+                         double least_weight = 0.0);
 
   [[nodiscard]] const Map& map() const { return map_; }
   /// By index in `Map::landmarks`.

@@ -18,6 +18,7 @@
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_lock.hpp"
+#include "mapping/wheel_scale_doubt.hpp"
 #include "vo/own_car_mask.hpp"
 
 namespace roadbook {
@@ -171,6 +172,8 @@ void build_from(const std::vector<Drive>& drives,
     for (std::size_t i = 0; i < drives.size(); ++i) {
       Session session = session_of(drives[i], cars[i], options, map_path);
       set_scale(adjusted, i, ground_sigma[i], session);
+      if (auto doubt = doubt_of_wheel_scale(session, options.bundle.wheel_scale_sigma, folders[i]))
+        summary.warnings.push_back(std::move(*doubt));
       assembled.sessions.push_back(std::move(session));
     }
     return assembled;

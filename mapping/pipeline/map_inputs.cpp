@@ -159,6 +159,16 @@ std::map<std::string, std::string> extension_meta(const std::filesystem::path& f
   return meta;
 }
 
+std::map<std::string, std::string> removal_meta(const std::filesystem::path& file,
+                                                const std::string& drive_digest) {
+  const MapMeta before = load_meta(file);
+  const auto inputs = before.values.find(kInputs);
+  Sha256 digest;
+  digest.update((inputs == before.values.end() ? std::string() : inputs->second) + " without " +
+                drive_digest);
+  return {{kInputs, digest.hex()}, {kExtension, ""}, {kExtensionBuild, ""}};
+}
+
 bool is_extended_by(const std::filesystem::path& file,
                     const std::vector<Drive>& drives,
                     const MapOptions& options) {

@@ -54,6 +54,10 @@ namespace roadbook {
                                                                 const std::vector<Drive>& drives,
                                                                 const MapOptions& options);
 
+/// Values of `map_meta` for the map in `file` after the drive with this digest was taken out.
+[[nodiscard]] std::map<std::string, std::string> removal_meta(const std::filesystem::path& file,
+                                                              const std::string& drive_digest);
+
 /// Whether the map's last session came by extending it with the one drive in `drives` and these
 /// options.
 [[nodiscard]] bool is_extended_by(const std::filesystem::path& file,

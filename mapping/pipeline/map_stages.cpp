@@ -199,7 +199,8 @@ Adjusted adjust(const MappingInput& input,
                 const std::vector<LoopClosure>& loops,
                 const Relaxed& relaxed,
                 const MapOptions& options,
-                const Progress& progress) {
+                const Progress& progress,
+                const AdjustTerms& terms) {
   Adjusted adjusted;
   adjusted.T_map_vehicle = relaxed.T_map_vehicle;
   BundleStageOptions stage_options = options.bundle;
@@ -208,11 +209,22 @@ Adjusted adjust(const MappingInput& input,
   // Two rounds: with the poses of the first, more tracks are found again in other passes.
   for (int round = 0; round < 2; ++round) {
     auto same = match_revisits(input, adjusted.T_map_vehicle, relaxed.component, options.revisits);
+    if (terms.may_join)
+      std::erase_if(same, [&](const TrackMatch& match) {
+        const auto& track = input.odometry.tracks[static_cast<std::size_t>(match.track)];
+        return std::any_of(
+            track.observations.begin(), track.observations.end(),
+            [&](const auto& o) { return !terms.may_join(o.keyframe, match.view.keyframe); });
+      });
     same.insert(same.end(), from_loops.begin(), from_loops.end());
+    same.insert(same.end(), terms.same.begin(), terms.same.end());
     adjusted.tracks = join_tracks(input.odometry, same);
     triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
     if (round > 0) split_wrong_joins_of(input, options, adjusted);
     adjusted.stage = make_bundle(input, adjusted.T_map_vehicle, adjusted.tracks, stage_options);
+    auto& problem = adjusted.stage.problem;
+    problem.priors = terms.priors;
+    problem.motions.insert(problem.motions.end(), terms.motions.begin(), terms.motions.end());
     // A looser tolerance changes poses by less than a tenth of their standard deviation and saves
     // most of the iterations (docs/results/speed.md).
     stage_options.bundle.relative_tolerance = kBundleTolerance;

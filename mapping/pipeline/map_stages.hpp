@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -53,13 +54,23 @@ struct Adjusted {
   LandmarkCovariances landmark_covariance;  ///< of `tracks`; empty before add_covariances
 };
 
+/// What `adjust` knows beside tracks and loops.
+struct AdjustTerms {
+  std::vector<TrackMatch> same;  ///< tracks of one landmark
+  std::vector<PosePrior> priors;
+  std::vector<MotionConstraint> motions;
+  /// Whether the images of two keyframes may show the same place; not set: all may.
+  std::function<bool(int, int)> may_join;
+};
+
 /// Finds landmarks again in other passes, joins and triangulates tracks, and adjusts poses and
 /// points (two rounds). Throws Refused if bundle adjustment fails; Interrupted.
 [[nodiscard]] Adjusted adjust(const MappingInput& input,
                               const std::vector<LoopClosure>& loops,
                               const Relaxed& relaxed,
                               const MapOptions& options,
-                              const Progress& progress);
+                              const Progress& progress,
+                              const AdjustTerms& terms = {});
 
 /// Splits joined tracks whose views contradict each other (mapping/pipeline/track_agreement.hpp),
 /// judged by the noise of key points that the last adjustment found.

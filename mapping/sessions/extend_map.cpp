@@ -23,6 +23,7 @@
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_lock.hpp"
+#include "mapping/wheel_scale_doubt.hpp"
 
 namespace roadbook {
 namespace {
@@ -215,6 +216,8 @@ void extend_from(const std::vector<Drive>& drives,  // one
     session.scale_source = map.sessions.front().scale_source;
     session.scale_sigma = map.sessions.front().scale_sigma;
     set_scale(adjusted, map.sessions.size(), has_wheels ? std::nullopt : ground_sigma, session);
+    if (auto doubt = doubt_of_wheel_scale(session, options.bundle.wheel_scale_sigma, folder))
+      summary.warnings.push_back(std::move(*doubt));
     session.localised_share = placed.localised_share();
     Map assembled = extended_map(map, session, joined, placed, adjusted, options);
     for (std::size_t s = 0; s < map.sessions.size(); ++s)

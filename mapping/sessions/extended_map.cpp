@@ -159,6 +159,8 @@ ExtendedTracks place_landmarks(const Map& map,
     for (std::size_t t = 0; t < tracks.size(); ++t)
       covariance[t] = &adjusted.landmark_covariance.of_track[t];
 
+  std::vector<std::size_t> views_before(map.landmarks.size(), 0);
+  for (const Observation& o : map.observations) ++views_before[at(o.landmark)];
   extended.landmarks.clear();
   extended.observations.clear();
   for (std::size_t t = 0; t < tracks.size(); ++t) {
@@ -182,6 +184,8 @@ ExtendedTracks place_landmarks(const Map& map,
     if (ground[t] >= 0 && !is_known) landmark.ground = ground[t] == 1;
     if (covariance[t] != nullptr && roadbook::is_known(*covariance[t]))
       landmark.covariance = *covariance[t];
+    else if (is_known && track.views.size() < views_before[at(landmarks[t])])
+      landmark.covariance = unknown_covariance<Eigen::Matrix3d>();  // it had that of more views
     extended.landmarks.push_back(landmark);
     for (const KeyPointId& view : track.views) {
       if (at(view.keyframe) < joined.first_keyframe) {
@@ -312,6 +316,18 @@ Map extended_map(const Map& map,
   place_evidence(map, placed, joined, tracks.of_landmark, extended);
   place_loops(placed, joined, adjusted, extended);
   return extended;
+}
+
+Map adjusted_map(const Map& map,
+                 const JoinedSession& joined,
+                 const Adjusted& adjusted,
+                 const MapOptions& options) {
+  Map moved = map;
+  place_keyframes(map, joined, {}, adjusted, moved);
+  const ExtendedTracks tracks = place_landmarks(map, joined, adjusted, options, moved);
+  place_corners(map, joined, adjusted, tracks, options, moved);
+  place_evidence(map, {}, joined, tracks.of_landmark, moved);
+  return moved;
 }
 
 }  // namespace roadbook

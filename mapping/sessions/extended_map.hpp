@@ -21,4 +21,11 @@ namespace roadbook {
                                const Adjusted& adjusted,
                                const MapOptions& options);
 
+/// The map without a further session, after poses and tracks of its own were adjusted (those of
+/// `joined`, which has no keyframe beyond the map's). What did not move keeps its numbers.
+[[nodiscard]] Map adjusted_map(const Map& map,
+                               const JoinedSession& joined,
+                               const Adjusted& adjusted,
+                               const MapOptions& options);
+
 }  // namespace roadbook

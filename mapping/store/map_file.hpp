@@ -56,6 +56,9 @@ class MapUpdate {
   MapUpdate(const MapUpdate&) = delete;
   MapUpdate& operator=(const MapUpdate&) = delete;
 
+  /// Replaces the map itself: the private tables, and the layers of poses and landmarks. Throws
+  /// Refused for a map that contradicts itself (`map_problems`).
+  void write_map(const Map& map);
   /// Creates the layer, or replaces the one of that name.
   void write_layer(const VectorLayer& layer);
   /// Creates or replaces a raster layer from a GeoTIFF (see mapping/layers/map_layers.hpp).

@@ -67,15 +67,18 @@ void write_map_content(const std::filesystem::path& file,
   set_meta_value(database, "landmark_points", landmark_points ? "all" : "left out: too many");
   for (const auto& [key, value] : meta) set_meta_value(database, key, value);
   note_build(database, map);
+  register_sessions(database, map);
+  transaction.commit();
+}
+
+void register_sessions(const SqlDatabase& database, const Map& map) {
   const std::string newest = content_time(map);  // outlives the statement it is bound to
-  // One registered table without geometry, and GDAL shows no table that is not registered.
   database
       .prepare(
           "INSERT OR REPLACE INTO gpkg_contents(table_name, data_type, identifier, description, "
           "last_change) VALUES('sessions', 'attributes', 'sessions', 'Drives in the map', ?)")
       .bind_text(1, newest)
       .run();
-  transaction.commit();
 }
 
 void copy_map_file(const std::filesystem::path& map, const std::filesystem::path& file) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mapping/map.hpp"
+#include "mapping/store/map_file_sqlite.hpp"
 #include "mapping/store/map_finish_options.hpp"
 
 namespace roadbook {
@@ -15,6 +16,10 @@ void write_map_content(const std::filesystem::path& file,
                        const Map& map,
                        const std::map<std::string, std::string>& meta,
                        const MapFinishOptions& options);
+
+/// Registers table `sessions`, the one table without geometry that GIS programs list: GDAL shows
+/// none that is not registered.
+void register_sessions(const SqlDatabase& database, const Map& map);
 
 /// Verifies MAP and copies it to `file`, whole even if another process changes MAP meanwhile.
 void copy_map_file(const std::filesystem::path& map, const std::filesystem::path& file);

@@ -63,7 +63,19 @@ std::array<double, kWheelValues> wheel_values(const WheelModel& m) {
 }
 
 WheelModel wheel_model_from(const std::array<double, kWheelValues>& v) {
-  return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10]};
+  WheelModel m;
+  m.radius_left_m = v[0];
+  m.radius_right_m = v[1];
+  m.track_width_m = v[2];
+  m.wheelbase_m = v[3];
+  m.steering_ratio = v[4];
+  m.ticks_per_turn = v[5];
+  m.time_offset_s = v[6];
+  m.sigma_distance_per_sqrt_m = v[7];
+  m.sigma_heading_per_sqrt_m = v[8];
+  m.sigma_lateral_per_sqrt_m = v[9];
+  m.sigma_angle_rad = v[10];
+  return m;
 }
 
 VehicleValues vehicle_values(const VehicleMeasures& v) {

@@ -4,9 +4,12 @@
 
 #include "base/error.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
+#include "mapping/layers/map_layers_poses.hpp"
 #include "mapping/layers/map_layers_raster.hpp"
 #include "mapping/layers/map_layers_table.hpp"
 #include "mapping/layers/map_layers_vector.hpp"
+#include "mapping/store/map_bytes.hpp"
+#include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_content.hpp"
 #include "mapping/store/map_file_disk.hpp"
@@ -52,6 +55,26 @@ MapUpdate::~MapUpdate() {
   } catch (const Error&) {
     // The next change removes a remaining copy; a destructor cannot report.
   }
+}
+
+void MapUpdate::write_map(const Map& map) {
+  if (const auto problems = map_problems(map); !problems.empty()) {
+    Problem first = problems.front();
+    first.file = impl_->map.string();
+    throw Refused(to_line(first));
+  }
+  const bool had_points = MapLayers(impl_->copy).has("landmark_points");
+  {
+    const SqlDatabase database = impl_->database();
+    SqlTransaction transaction(database);
+    create_map_tables(database);
+    write_map_tables(database, map);
+    transaction.commit();
+  }
+  (void)remove(kBeforeTable);
+  write_layer(pose_layer(map));
+  if (had_points) write_layer(landmark_layer(map));
+  register_sessions(impl_->database(), map);
 }
 
 void MapUpdate::write_layer(const VectorLayer& layer) {

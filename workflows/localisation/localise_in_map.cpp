@@ -7,6 +7,7 @@
 #include "base/whole_file.hpp"
 #include "drive/true_poses.hpp"
 #include "drive/vehicle_yaml.hpp"
+#include "mapping/landmark_weights.hpp"
 #include "mapping/pieces.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_reading.hpp"
@@ -97,7 +98,7 @@ LocaliseResult localise_in_map(const LocaliseRequest& request, Messages& message
   reading.require_same_map();
   require_landmarks(map, request.map);
   result.warnings = doubts_about(drive, map, drive.digest());
-  const LandmarkIndex index(map, request.sessions);
+  const LandmarkIndex index(map, request.sessions, kLeastWeight);
   for (const Session& session : map.sessions)
     if (request.sessions.empty() ||
         std::count(request.sessions.begin(), request.sessions.end(), session.name) > 0)

@@ -48,6 +48,15 @@ void expect_equal(const Map& a, const Map& b) {
     ASSERT_EQ(s.wheels.has_value(), t.wheels.has_value());
     if (s.wheels) {
       EXPECT_EQ(s.wheels->radius_left_m, t.wheels->radius_left_m);
+      EXPECT_EQ(s.wheels->radius_right_m, t.wheels->radius_right_m);
+      EXPECT_EQ(s.wheels->track_width_m, t.wheels->track_width_m);
+      EXPECT_EQ(s.wheels->wheelbase_m, t.wheels->wheelbase_m);
+      EXPECT_EQ(s.wheels->steering_ratio, t.wheels->steering_ratio);
+      EXPECT_EQ(s.wheels->ticks_per_turn, t.wheels->ticks_per_turn);
+      EXPECT_EQ(s.wheels->time_offset_s, t.wheels->time_offset_s);
+      EXPECT_EQ(s.wheels->sigma_distance_per_sqrt_m, t.wheels->sigma_distance_per_sqrt_m);
+      EXPECT_EQ(s.wheels->sigma_heading_per_sqrt_m, t.wheels->sigma_heading_per_sqrt_m);
+      EXPECT_EQ(s.wheels->sigma_lateral_per_sqrt_m, t.wheels->sigma_lateral_per_sqrt_m);
       EXPECT_EQ(s.wheels->sigma_angle_rad, t.wheels->sigma_angle_rad);
     }
     EXPECT_EQ(s.vehicle, t.vehicle);

@@ -71,7 +71,15 @@ inline Session small_session(int index, int cameras, Random& random) {
     mounted.time_offset_s = random.normal();
     s.rig.cameras.push_back(mounted);
   }
-  if (index % 2 == 0) s.wheels = WheelModel{.radius_left_m = random.uniform(0.2, 0.4)};
+  if (index % 2 == 0) {
+    s.wheels = WheelModel{.radius_left_m = random.uniform(0.2, 0.4)};
+    s.wheels->ticks_per_turn = random.uniform(100.0, 200.0);
+    s.wheels->time_offset_s = random.uniform(-0.1, 0.1);
+    s.wheels->sigma_distance_per_sqrt_m = random.uniform(0.01, 0.02);
+    s.wheels->sigma_heading_per_sqrt_m = random.uniform(0.003, 0.004);
+    s.wheels->sigma_lateral_per_sqrt_m = random.uniform(0.005, 0.006);
+    s.wheels->sigma_angle_rad = random.uniform(0.001, 0.002);
+  }
   s.wheel_scale = random.uniform(0.9, 1.1);
   s.scale_source = index % 2 == 0 ? ScaleSource::kWheels : ScaleSource::kCameraHeight;
   s.scale_sigma = random.uniform();

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/map.hpp"
+
+namespace roadbook {
+
+struct CurateOptions {
+  int per_place = 60;               ///< landmarks that a place keeps
+  std::optional<std::size_t> most;  ///< landmarks of the map; the places then keep fewer
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+/// What a curation keeps.
+struct Curation {
+  std::vector<char> keeps;      ///< of each landmark
+  std::size_t kept = 0;         ///< number of them
+  int per_place = 0;            ///< landmarks that a place keeps where it has them
+  std::size_t places = 0;       ///< from which landmarks were seen
+  std::size_t full_places = 0;  ///< of them, those with at least `per_place` landmarks afterwards
+};
+
+/// Chooses the landmarks that localisation needs. A place is a square metre of the way, an eighth
+/// of the headings and a camera; a landmark belongs to all places from which it was seen. The best
+/// landmarks come first: by their weight (`landmark_weights`) times the share of passing sessions
+/// that saw them, then by views, then by standard deviation. One stays if one of its places has
+/// fewer than `per_place` yet [the greedy cover of a set multicover]. Deterministic.
+[[nodiscard]] Curation curation_of(const Map& map, const CurateOptions& options);
+
+/// The map without the landmarks that `curation` drops, their observations and what sessions saw
+/// of them. Poses stay as they are.
+[[nodiscard]] Map curated_map(const Map& map, const Curation& curation);
+
+struct CurateSummary {
+  std::size_t landmarks_before = 0;
+  std::size_t observations_before = 0;
+  std::size_t observations = 0;
+  std::uintmax_t bytes_before = 0;  ///< of the file
+  std::uintmax_t bytes = 0;
+  Curation curation;
+  std::string digest;  ///< of the map, unchanged after a dry run
+};
+
+/// Curates the map file `map`, or only tells what it would do. Layers and tables stay. Throws
+/// BadInput, StorageError; the map then stays as it is.
+CurateSummary curate_map(const std::filesystem::path& map,
+                         const CurateOptions& options,
+                         bool dry_run);
+
+}  // namespace roadbook

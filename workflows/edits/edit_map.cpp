@@ -1,0 +1,141 @@
+#include "workflows/edits/edit_map.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "base/error.hpp"
+#include "exchange/layers/friction_layers.hpp"
+#include "mapping/edits/edited_map.hpp"
+#include "mapping/layers/map_layers.hpp"
+#include "mapping/pieces.hpp"
+#include "mapping/store/map_file_lock.hpp"
+#include "semantics/labels/label_layers.hpp"
+#include "semantics/labels/label_store.hpp"
+#include "workflows/edits/edit_file.hpp"
+#include "workflows/edits/edit_record.hpp"
+
+namespace roadbook {
+namespace {
+
+// Layers and tables that do not depend on where the poses are, and those that this command writes.
+bool stays(const std::string& name) {
+  static const std::set<std::string> tables = [] {
+    std::set<std::string> names{"poses",      "landmark_points", kEditTable,
+                                kBeforeTable, "label_classes",   "layer_styles"};
+    names.insert(measured_tables().begin(), measured_tables().end());
+    names.insert(learning_tables().begin(), learning_tables().end());
+    return names;
+  }();
+  return tables.contains(name) || is_label_layer(name) || name.ends_with("_events");
+}
+
+bool has_moved(const Map& before, const Map& after) {
+  for (std::size_t k = 0; k < before.keyframes.size(); ++k)
+    if (before.T_map_vehicle(static_cast<int>(k)).matrix() !=
+        after.T_map_vehicle(static_cast<int>(k)).matrix())
+      return true;
+  return false;
+}
+
+void store_edited(const std::filesystem::path& file,
+                  const Map& now,
+                  const Map& edited,
+                  const std::vector<MapEdit>& edits,
+                  const Map& before,
+                  EditResult& result) {
+  const MapLayers layers(file);
+  const std::vector<Label> labels = read_labels(file);
+  MapUpdate update(file);
+  update.write_map(edited);
+  write_edits(update, edits, &before);
+  if (piece_count(edited) != piece_count(now))
+    update.set_meta(kPiecesKey, std::to_string(piece_count(edited)));
+  if (has_moved(now, edited)) {
+    for (const std::string& name : layer_names(file))
+      if (!stays(name) && update.remove(name)) result.dropped.push_back(name);
+    write_label_layers(update, layers, edited, labels);
+  }
+  update.commit();
+}
+
+void measure_moves(const Map& before, const Map& after, EditResult& result) {
+  std::vector<double> moves;
+  for (std::size_t k = 0; k < before.keyframes.size(); ++k)
+    moves.push_back((before.T_map_vehicle(static_cast<int>(k)).translation() -
+                     after.T_map_vehicle(static_cast<int>(k)).translation())
+                        .norm());
+  if (moves.empty()) return;
+  std::sort(moves.begin(), moves.end());
+  result.moved_median_m = moves[moves.size() / 2];
+  result.moved_max_m = moves.back();
+}
+
+MapOptions options_with(int num_threads) {
+  MapOptions options;
+  options.num_threads = num_threads;
+  return options;
+}
+
+}  // namespace
+
+EditResult edit_map(const EditRequest& request, Messages& messages) {
+  const MapHold hold(request.map);
+  EditResult result;
+  result.edits = stored_edits(request.map);
+  result.digest = load_meta(request.map).digest;
+  if (request.edits.empty() && request.undo == 0) return result;
+  std::vector<MapEdit> edits = result.edits;
+  if (!request.edits.empty()) {
+    const auto more = read_edit_file(request.edits);
+    edits.insert(edits.end(), more.begin(), more.end());
+  }
+  if (request.undo != 0) {
+    if (request.undo < 1 || request.undo > static_cast<int>(result.edits.size()))
+      throw InvalidOption("--undo", std::to_string(request.undo),
+                          result.edits.empty()
+                              ? "no edit: the map has none"
+                              : "1 to " + std::to_string(result.edits.size()) + " (--list)");
+    edits.erase(edits.begin() + request.undo - 1);
+  }
+  const Map now = load_map_with_corners(request.map);
+  const std::optional<Map> before = stored_map_before_edits(request.map);
+  const bool is_new = result.edits.empty();
+  if (!before && !is_new && request.undo != 0) {
+    // A session came after the edits: nobody knows the map without this one.
+    MapUpdate update(request.map);
+    write_edits(update, edits, nullptr);
+    update.commit();
+    result.undone_later = true;
+  } else if (before || is_new) {
+    const Map& base = before ? *before : now;
+    const Map edited =
+        edited_map(base, edits, options_with(request.num_threads), messages.progress());
+    measure_moves(now, edited, result);
+    store_edited(request.map, now, edited, edits, base, result);
+  } else {
+    // The earlier edits are in the poses already; they take part again, in agreement.
+    const Map edited =
+        edited_map(now, edits, options_with(request.num_threads), messages.progress());
+    measure_moves(now, edited, result);
+    store_edited(request.map, now, edited, edits, now, result);
+  }
+  result.edits = std::move(edits);
+  result.digest = load_meta(request.map).digest;
+  return result;
+}
+
+bool repeat_edits(const std::filesystem::path& map, int num_threads, Messages& messages) {
+  const MapHold hold(map);
+  const std::vector<MapEdit> edits = stored_edits(map);
+  if (edits.empty() || MapLayers(map).has(kBeforeTable)) return false;
+  const Map before = load_map_with_corners(map);
+  EditResult result;
+  store_edited(map, before,
+               edited_map(before, edits, options_with(num_threads), messages.progress()), edits,
+               before, result);
+  return true;
+}
+
+}  // namespace roadbook
