@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "base/index.hpp"
 #include "base/se3.hpp"
 #include "mapping/checks/finding.hpp"
+#include "mapping/landmark_information.hpp"
 #include "vo/planar_motion.hpp"
 
 namespace roadbook {
@@ -23,46 +23,10 @@ constexpr double kLeastShare = 0.5;
 // Of landmarks, whose covariance is given the poses, the median of the map says what is usual.
 constexpr double kLeastOfMedian = 0.05;
 
-// What an observation says of the pose (right perturbation) and the landmark (map axes).
-struct Terms {
-  Eigen::Matrix<double, 2, 6> J_pose;
-  Matrix23d J_point;
-};
-
-std::optional<Terms> terms_of(const Map& map, const Observation& o) {
-  const Keyframe& keyframe = map.keyframes[at(o.keyframe)];
-  const MountedCamera& mounted = map.sessions[at(keyframe.session)].rig.cameras[at(o.camera)];
-  const Eigen::Isometry3d T_vehicle_map = map.T_map_vehicle(o.keyframe).inverse();
-  const Eigen::Vector3d p_vehicle = T_vehicle_map * map.p_map(map.landmarks[at(o.landmark)]);
-  const Eigen::Isometry3d T_camera_vehicle = mounted.T_vehicle_camera.inverse();
-  Matrix23d J;
-  if (!mounted.camera.project(T_camera_vehicle * p_vehicle, &J) || !J.allFinite())
-    return std::nullopt;
-  J /= static_cast<double>(o.sigma_px);
-  const Matrix23d J_vehicle = J * T_camera_vehicle.linear();
-  Terms terms;
-  terms.J_point = J_vehicle * T_vehicle_map.linear();
-  terms.J_pose.leftCols<3>() = -J_vehicle;
-  terms.J_pose.rightCols<3>() = J_vehicle * skew(p_vehicle);
-  return terms;
-}
-
-// Information of each landmark given the poses, if observations are independent.
-std::vector<Eigen::Matrix3d> information_of_landmarks(const Map& map) {
-  std::vector<Eigen::Matrix3d> information(map.landmarks.size(), Eigen::Matrix3d::Zero());
-  for (const Observation& o : map.observations)
-    if (const auto terms = terms_of(map, o))
-      information[at(o.landmark)].noalias() += terms->J_point.transpose() * terms->J_point;
-  return information;
-}
-
-// Inverse; unknown where there is none.
-template <int N>
-Eigen::Matrix<double, N, N> covariance_of(const Eigen::Matrix<double, N, N>& information) {
-  Eigen::FullPivLU<Eigen::Matrix<double, N, N>> lu(information);
+Matrix6d covariance_of_pose(const Matrix6d& information) {
+  Eigen::FullPivLU<Matrix6d> lu(information);
   lu.setThreshold(1e-12);
-  if (!lu.isInvertible()) return unknown_covariance<Eigen::Matrix<double, N, N>>();
-  return lu.inverse();
+  return lu.isInvertible() ? Matrix6d(lu.inverse()) : unknown_covariance<Matrix6d>();
 }
 
 // Covariance of each pose if all other poses were known: a block of the diagonal of the reduced
@@ -80,7 +44,7 @@ std::vector<Matrix6d> least_of_poses(const Map& map,
       W.noalias() += terms->J_pose.transpose() * terms->J_point;
     }
   for (const auto& [key, W] : coupling) {
-    const Eigen::Matrix3d V = covariance_of<3>(of_landmark[at(key.second)]);
+    const Eigen::Matrix3d V = covariance_of_information(of_landmark[at(key.second)]);
     if (is_known(V)) information[at(key.first)].noalias() -= W * V * W.transpose();
   }
   for (std::size_t k = 1; k < map.keyframes.size(); ++k) {
@@ -92,7 +56,7 @@ std::vector<Matrix6d> least_of_poses(const Map& map,
     information[k - 1] += A.transpose() * wheels * A;
   }
   std::vector<Matrix6d> covariance;
-  for (const Matrix6d& one : information) covariance.push_back(covariance_of<6>(one));
+  for (const Matrix6d& one : information) covariance.push_back(covariance_of_pose(one));
   return covariance;
 }
 
@@ -134,7 +98,7 @@ void find_landmark_covariances(const Map& map,
   std::vector<double> ratios;
   std::vector<int> judged;
   for (std::size_t l = 0; l < map.landmarks.size(); ++l) {
-    const Eigen::Matrix3d least = covariance_of<3>(information[l]);
+    const Eigen::Matrix3d least = covariance_of_information(information[l]);
     if (!is_known(map.landmarks[l].covariance) || !is_known(least)) continue;
     ratios.push_back(map.landmarks[l].covariance.trace() / least.trace());
     judged.push_back(static_cast<int>(l));
@@ -158,7 +122,7 @@ void find_landmark_covariances(const Map& map,
 
 std::vector<Problem> covariance_problems(const Map& map) {
   std::vector<Problem> problems;
-  const auto of_landmark = information_of_landmarks(map);
+  const auto of_landmark = landmark_information(map);
   find_pose_covariances(map, least_of_poses(map, of_landmark), problems);
   find_landmark_covariances(map, of_landmark, problems);
   return problems;

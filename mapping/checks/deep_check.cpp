@@ -71,6 +71,10 @@ std::vector<Problem> descriptor_problems(const Map& map,
   for (std::size_t s = 0; s < drives.size(); ++s)
     if (drives[s] != nullptr)
       compare_session(map, static_cast<int>(s), *drives[s], num_threads, least_bits);
+  // The descriptor may be that of a view whose recording is not there.
+  for (const Observation& o : map.observations)
+    if (drives[at(map.keyframes[at(o.keyframe)].session)] == nullptr)
+      least_bits[at(o.landmark)] = kNotSeen;
   std::vector<int> wrong;
   for (std::size_t l = 0; l < least_bits.size(); ++l)
     if (least_bits[l] != kNotSeen && least_bits[l] > kMostBits)

@@ -1,13 +1,14 @@
 #include "mapping/sessions/curate_map.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <queue>
 #include <set>
-#include <tuple>
+#include <utility>
 
+#include "base/cell_grid.hpp"
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/se3.hpp"
@@ -18,7 +19,10 @@
 namespace roadbook {
 namespace {
 
-using Place = std::tuple<int, int, int, int>;  // x and y [m], eighth of the headings, camera
+// A place reaches so far along and across the way from the keyframe that made it.
+constexpr double kAlongM = 0.5;
+constexpr double kAcrossM = 1.5;
+constexpr double kTurnRad = std::numbers::pi / 8.0;
 
 // Indices of the places of each landmark, ascending, and the number of places.
 struct Places {
@@ -26,23 +30,49 @@ struct Places {
   std::size_t count = 0;
 };
 
-Places places_of(const Map& map) {
-  std::vector<std::array<int, 3>> of_keyframe;
+// The stretch of way of each keyframe: the nearest that an earlier keyframe made, or a new one. So
+// sessions that drive side by side share their places.
+std::vector<int> stretches_of(const Map& map) {
+  struct Stretch {
+    int id;
+    Eigen::Isometry3d T_map_vehicle;
+  };
+  CellGrid<Stretch> grid(2.0 * kAcrossM);
+  std::vector<int> of_keyframe;
+  int count = 0;
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
     const Eigen::Isometry3d T = map.T_map_vehicle(static_cast<int>(k));
-    const double eighths = heading_of(T) / (2.0 * std::numbers::pi) * 8.0;
-    of_keyframe.push_back({static_cast<int>(std::floor(T.translation().x())),
-                           static_cast<int>(std::floor(T.translation().y())),
-                           (static_cast<int>(std::floor(eighths + 0.5)) + 8) % 8});
+    int nearest = -1;
+    double least = kAlongM;
+    grid.visit_near(T.translation().head<2>(), [&](const Stretch& stretch) {
+      const Eigen::Isometry3d off = stretch.T_map_vehicle.inverse() * T;
+      const double along = std::abs(off.translation().x());
+      if (std::abs(off.translation().y()) > kAcrossM ||
+          std::abs(off.translation().z()) > kAcrossM || std::abs(heading_of(off)) > kTurnRad ||
+          !(along < least))
+        return;
+      least = along;
+      nearest = stretch.id;
+    });
+    if (nearest < 0) {
+      nearest = count++;
+      grid.insert(T.translation().head<2>(), {nearest, T});
+    }
+    of_keyframe.push_back(nearest);
   }
+  return of_keyframe;
+}
+
+Places places_of(const Map& map) {
+  const std::vector<int> stretches = stretches_of(map);
   Places places;
   places.of_landmark.resize(map.landmarks.size());
-  std::map<Place, int> ids;
+  std::map<std::pair<int, int>, int> ids;  // stretch, camera
   for (const Observation& o : map.observations) {
-    const auto& [x, y, heading] = of_keyframe[at(o.keyframe)];
     // Cameras of different rigs with the same index share a place: they look the same way.
     const int id =
-        ids.try_emplace({x, y, heading, o.camera}, static_cast<int>(ids.size())).first->second;
+        ids.try_emplace({stretches[at(o.keyframe)], o.camera}, static_cast<int>(ids.size()))
+            .first->second;
     places.of_landmark[at(o.landmark)].push_back(id);
   }
   places.count = ids.size();
@@ -53,50 +83,57 @@ Places places_of(const Map& map) {
   return places;
 }
 
-// Landmarks that were seen, the best first.
-std::vector<int> best_first(const Map& map) {
+// How much each landmark is worth to localisation; 0: it was never seen.
+std::vector<double> values_of(const Map& map) {
   const std::vector<double> weights = landmark_weights(map);
   std::vector<std::set<int>> seen_by(map.landmarks.size());
-  std::vector<int> views(map.landmarks.size(), 0);
-  for (const Observation& o : map.observations) {
+  for (const Observation& o : map.observations)
     seen_by[at(o.landmark)].insert(map.keyframes[at(o.keyframe)].session);
-    ++views[at(o.landmark)];
-  }
   std::vector<std::set<int>> passed_by = seen_by;
   for (const LandmarkSession& row : map.landmark_sessions)
     if (row.expected > 0) passed_by[at(row.landmark)].insert(row.session);
-  // Of few sessions, little is known: one half of one more counts to each.
-  const auto value = [&](int l) {
-    return weights[at(l)] * (static_cast<double>(seen_by[at(l)].size()) + 0.5) /
-           (static_cast<double>(passed_by[at(l)].size()) + 1.0);
-  };
-  const auto sigma = [&](int l) {
-    const Eigen::Matrix3d& covariance = map.landmarks[at(l)].covariance;
-    return is_known(covariance) ? covariance.trace() : 1.0;
-  };
-  std::vector<std::tuple<double, int, double, int>> ranks;
-  for (int l = 0; l < static_cast<int>(map.landmarks.size()); ++l)
-    if (views[at(l)] > 0) ranks.emplace_back(-value(l), -views[at(l)], sigma(l), l);
-  std::sort(ranks.begin(), ranks.end());
-  std::vector<int> best;
-  for (const auto& rank : ranks) best.push_back(std::get<3>(rank));
-  return best;
+  std::vector<double> values;
+  for (std::size_t l = 0; l < weights.size(); ++l)
+    // Of few sessions, little is known: one half of one more counts to each.
+    values.push_back(seen_by[l].empty()
+                         ? 0.0
+                         : weights[l] * (static_cast<double>(seen_by[l].size()) + 0.5) /
+                               (static_cast<double>(passed_by[l].size()) + 1.0));
+  return values;
 }
 
-Curation cover_of(const Places& places, const std::vector<int>& best, int per_place) {
+// The greedy cover: next comes the landmark with the largest value times number of places that need
+// it. The number only falls, so that a landmark is looked at again only when it comes first.
+Curation cover_of(const Places& places, const std::vector<double>& values, int per_place) {
   Curation curation;
   curation.per_place = per_place;
   curation.places = places.count;
   curation.keeps.assign(places.of_landmark.size(), 0);
   std::vector<int> count(places.count, 0);
-  for (const int l : best) {
-    const std::vector<int>& of_landmark = places.of_landmark[at(l)];
-    const bool is_needed = std::any_of(of_landmark.begin(), of_landmark.end(),
-                                       [&](int place) { return count[at(place)] < per_place; });
-    if (!is_needed) continue;
+  const auto gain_of = [&](int l) {
+    const auto& of_landmark = places.of_landmark[at(l)];
+    return values[at(l)] * static_cast<double>(std::count_if(
+                               of_landmark.begin(), of_landmark.end(),
+                               [&](int place) { return count[at(place)] < per_place; }));
+  };
+  // Largest gain first, then smallest index.
+  std::priority_queue<std::pair<double, int>> next;
+  for (std::size_t l = 0; l < values.size(); ++l)
+    if (const double gain = gain_of(static_cast<int>(l)); gain > 0.0)
+      next.emplace(gain, -static_cast<int>(l));
+  while (!next.empty()) {
+    const auto [gain, negative] = next.top();
+    next.pop();
+    const int l = -negative;
+    const double now = gain_of(l);
+    if (now <= 0.0) continue;
+    if (now < gain) {
+      next.emplace(now, negative);
+      continue;
+    }
     curation.keeps[at(l)] = 1;
     ++curation.kept;
-    for (const int place : of_landmark) ++count[at(place)];
+    for (const int place : places.of_landmark[at(l)]) ++count[at(place)];
   }
   curation.full_places = static_cast<std::size_t>(
       std::count_if(count.begin(), count.end(), [&](int n) { return n >= per_place; }));
@@ -113,21 +150,21 @@ void CurateOptions::check() const {
 Curation curation_of(const Map& map, const CurateOptions& options) {
   options.check();
   const Places places = places_of(map);
-  const std::vector<int> best = best_first(map);
-  Curation curation = cover_of(places, best, options.per_place);
+  const std::vector<double> values = values_of(map);
+  Curation curation = cover_of(places, values, options.per_place);
   if (!options.most || curation.kept <= *options.most) return curation;
   // The largest number a place that keeps no more than `most`.
   int enough = 0;
   int too_many = options.per_place;
   while (too_many - enough > 1) {
     const int middle = (enough + too_many) / 2;
-    (cover_of(places, best, middle).kept <= *options.most ? enough : too_many) = middle;
+    (cover_of(places, values, middle).kept <= *options.most ? enough : too_many) = middle;
   }
   if (enough == 0)
     throw InvalidOption(
         "--most", std::to_string(*options.most),
-        ">= " + std::to_string(cover_of(places, best, 1).kept) + ", one landmark for each place");
-  return cover_of(places, best, enough);
+        ">= " + std::to_string(cover_of(places, values, 1).kept) + ", one landmark for each place");
+  return cover_of(places, values, enough);
 }
 
 Map curated_map(const Map& map, const Curation& curation) {

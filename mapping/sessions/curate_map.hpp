@@ -28,11 +28,12 @@ struct Curation {
   std::size_t full_places = 0;  ///< of them, those with at least `per_place` landmarks afterwards
 };
 
-/// Chooses the landmarks that localisation needs. A place is a square metre of the way, an eighth
-/// of the headings and a camera; a landmark belongs to all places from which it was seen. The best
-/// landmarks come first: by their weight (`landmark_weights`) times the share of passing sessions
-/// that saw them, then by views, then by standard deviation. One stays if one of its places has
-/// fewer than `per_place` yet [the greedy cover of a set multicover]. Deterministic.
+/// Chooses the landmarks that localisation needs. A place is a metre of the way in
+/// one direction, 1.5 m to both sides, and a camera; a landmark belongs to all places from which it
+/// was seen. Landmarks are taken one
+/// after another, each time the one with the largest product of its weight (`landmark_weights`),
+/// the share of passing sessions that saw it, and the number of its places that have fewer than
+/// `per_place` yet [greedy algorithm for set multicover]. Deterministic.
 [[nodiscard]] Curation curation_of(const Map& map, const CurateOptions& options);
 
 /// The map without the landmarks that `curation` drops, their observations and what sessions saw

@@ -109,8 +109,12 @@ void add_landmark_covariances(const JoinedSession& joined,
                               Adjusted& adjusted) {
   std::vector<std::size_t> places;
   std::vector<JoinedTrack> tracks;
+  // Those that the session sees, and those that it moved.
+  const auto has_moved = [&](std::size_t t) {
+    return t >= joined.tracks.size() || adjusted.tracks[t].p_map != joined.tracks[t].p_map;
+  };
   for (std::size_t t = 0; t < adjusted.tracks.size(); ++t)
-    if (adjusted.tracks[t].p_map && joined.has_session(adjusted.tracks[t])) {
+    if (adjusted.tracks[t].p_map && (joined.has_session(adjusted.tracks[t]) || has_moved(t))) {
       places.push_back(t);
       tracks.push_back(adjusted.tracks[t]);
     }

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "mapping/joined_parts.hpp"
+#include "mapping/landmark_information.hpp"
 #include "mapping/pieces.hpp"
 
 namespace roadbook {
@@ -64,6 +65,27 @@ void move_to_frames(const Map& map, const NewIndices& index, Map& smaller) {
     }
     landmark.map_frame = index.frame[at(landmark.map_frame)];
     smaller.landmarks.push_back(landmark);
+  }
+}
+
+// A landmark that lost views is known less: by as much as independent observations would be.
+void widen_covariances(const Map& map, const NewIndices& index, Map& smaller) {
+  std::vector<int> lost(map.landmarks.size(), 0);
+  for (const Observation& o : map.observations)
+    if (index.keyframe[at(o.keyframe)] < 0) ++lost[at(o.landmark)];
+  const auto before = landmark_information(map);
+  const auto after = landmark_information(smaller);
+  for (std::size_t l = 0; l < map.landmarks.size(); ++l) {
+    if (lost[l] == 0 || index.landmark[l] < 0) continue;
+    Landmark& landmark = smaller.landmarks[at(index.landmark[l])];
+    if (!is_known(landmark.covariance)) continue;
+    const Eigen::Matrix3d least_before = covariance_of_information(before[l]);
+    const Eigen::Matrix3d least_after = covariance_of_information(after[at(index.landmark[l])]);
+    const Eigen::Matrix3d R =
+        smaller.map_frames[at(landmark.map_frame)].T_map_frame.linear();  // map from its frame
+    const double factor = landmark.covariance.trace() / least_before.trace();
+    landmark.covariance = factor * (R.transpose() * least_after * R);
+    if (!is_known(landmark.covariance)) landmark.covariance = unknown_covariance<Eigen::Matrix3d>();
   }
 }
 
@@ -128,6 +150,7 @@ RemovedSession without_session(const Map& map, int session) {
     loop.to = index.keyframe[at(loop.to)];
     if (loop.from >= 0 && loop.to >= 0) smaller.loops.push_back(loop);
   }
+  widen_covariances(map, index, smaller);
   renumber_pieces(smaller);
   removed.pieces = piece_count(smaller);
   return removed;

@@ -19,9 +19,10 @@ struct RemovedSession {
 
 /// Takes a session out of a map: its keyframes, its observations and what it saw of landmarks.
 /// Poses of the other sessions and landmarks keep their numbers, bit for bit; they get new indices
-/// without gaps. A map frame goes if no pose is left in it. Keyframes that odometry, accepted loops
-/// and at least ten common landmarks no longer join become pieces of their own. Throws Refused for
-/// the only session of a map.
+/// without gaps; landmarks that lose views get the covariance that fewer views give. A map frame
+/// goes if no pose is left in it. Keyframes that odometry, accepted loops and at least ten common
+/// landmarks no longer join become pieces of their own. Throws Refused for the only session of a
+/// map.
 [[nodiscard]] RemovedSession without_session(const Map& map, int session);
 
 }  // namespace roadbook

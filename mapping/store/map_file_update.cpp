@@ -75,6 +75,7 @@ void MapUpdate::write_map(const Map& map) {
   write_layer(pose_layer(map));
   if (had_points) write_layer(landmark_layer(map));
   register_sessions(impl_->database(), map);
+  impl_->database().run("VACUUM");  // a smaller map has a smaller file
 }
 
 void MapUpdate::write_layer(const VectorLayer& layer) {
