@@ -21,6 +21,7 @@ namespace roadbook {
 namespace {
 
 constexpr int kBacklog = 128;
+constexpr std::size_t kUncompressedBytes = 4096;  // and more: answers that are not compressed
 
 /// Lets httplib read and write a connection.
 class ConnectionStream : public httplib::Stream {
@@ -74,6 +75,18 @@ void give(HttpResponse response, httplib::Response* out) {
   add_safety_fields(&response);
   out->status = response.status;
   for (const auto& [name, value] : response.fields) out->set_header(name, value);
+  // httplib compresses contents with Brotli's slowest level: two seconds for the page. A browser of
+  // this machine does not need it. Contents from a provider are sent as they are; the error handler
+  // needs those of errors.
+  if (!response.events && response.status == 200 && response.body.size() >= kUncompressedBytes) {
+    const std::size_t size = response.body.size();
+    out->set_content_provider(size, response.type,
+                              [body = std::move(response.body)](
+                                  std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                                return sink.write(body.data() + offset, length);
+                              });
+    return;
+  }
   if (!response.events) {
     out->set_content(response.body, response.type);
     return;
