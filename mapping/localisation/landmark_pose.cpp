@@ -1,9 +1,8 @@
 #include "mapping/localisation/landmark_pose.hpp"
 
-#include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
-#include <ceres/rotation.h>
+#include <ceres/sized_cost_function.h>
 
 #include <Eigen/Cholesky>
 #include <array>
@@ -15,7 +14,6 @@
 
 #include "base/index.hpp"
 #include "mapping/optimisation/ceres_solve.hpp"
-#include "sensors/camera_projections.hpp"
 
 namespace roadbook {
 namespace {
@@ -42,50 +40,74 @@ Matrix6d perturbation_of_step(const Step& step) {
   return J;
 }
 
-struct PixelCost {
-  const MountedCamera& mounted;
-  Eigen::Vector3d p_initial;  // landmark in the vehicle frame of the initial pose
-  Eigen::Vector2d pixel;
-  Eigen::Matrix2d root;  // of the information of the error
+// Error of a pixel. The step moves the vehicle: p_vehicle = R^T (p_initial - t), with the rotation
+// R of the rotation vector.
+class PixelCost final : public ceres::SizedCostFunction<2, 6> {
+ public:
+  // `p_initial`: landmark in the vehicle frame of the initial pose. `root`: of the information of
+  // the error.
+  PixelCost(const MountedCamera& mounted,
+            Eigen::Vector3d p_initial,
+            Eigen::Vector2d pixel,
+            Eigen::Matrix2d root)
+      : mounted_(mounted),
+        p_initial_(std::move(p_initial)),
+        pixel_(std::move(pixel)),
+        root_(std::move(root)) {
+    mounted_.camera.max_angle_rad = std::numbers::pi;  // a step may pass the angle of the lens
+  }
 
-  template <typename T>
-  bool operator()(const T* step, T* residual) const {
-    const std::array<T, 3> from{p_initial.x() - step[0], p_initial.y() - step[1],
-                                p_initial.z() - step[2]};
-    const std::array<T, 3> back{-step[3], -step[4], -step[5]};
-    std::array<T, 3> p;
-    ceres::AngleAxisRotatePoint(back.data(), from.data(), p.data());
-    const Eigen::Matrix<T, 3, 1> p_vehicle(p[0], p[1], p[2]);
-    const Eigen::Matrix<T, 3, 1> p_camera =
-        mounted.T_vehicle_camera.linear().transpose().cast<T>() *
-        (p_vehicle - mounted.T_vehicle_camera.translation().cast<T>());
-    std::array<T, Camera::kMaxParameters> q;
-    for (std::size_t i = 0; i < q.size(); ++i) q[i] = T(mounted.camera.parameters[i]);
-    Eigen::Matrix<T, 2, 1> predicted;
-    if (!project_with(mounted.camera.model, q.data(), p_camera, &predicted)) {
-      residual[0] = T(kNotSeen);
-      residual[1] = T(0.0);
-      return true;
-    }
-    const Eigen::Matrix<T, 2, 1> e = root.cast<T>() * (pixel.cast<T>() - predicted);
-    residual[0] = e.x();
-    residual[1] = e.y();
+  bool Evaluate(const double* const* parameters,
+                double* residual,
+                double** jacobians) const override {
+    const Eigen::Map<const Eigen::Vector3d> way(parameters[0]);
+    const Eigen::Map<const Eigen::Vector3d> turn(parameters[0] + 3);
+    const Eigen::Vector3d p_vehicle = so3_exp(-turn) * (p_initial_ - way);
+    const Eigen::Matrix3d R_camera_vehicle = mounted_.T_vehicle_camera.linear().transpose();
+    const Eigen::Vector3d p_camera =
+        R_camera_vehicle * (p_vehicle - mounted_.T_vehicle_camera.translation());
+    Eigen::Map<Eigen::Vector2d> e(residual);
+    const bool wants_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
+    Matrix23d J_point;
+    const auto predicted = mounted_.camera.project(p_camera, wants_jacobian ? &J_point : nullptr);
+    e = predicted ? Eigen::Vector2d(root_ * (pixel_ - *predicted)) : Eigen::Vector2d(kNotSeen, 0.0);
+    if (!wants_jacobian) return true;
+    Eigen::Map<Eigen::Matrix<double, 2, 6, Eigen::RowMajor>> J(jacobians[0]);
+    J.setZero();
+    if (!predicted) return true;
+    const Matrix23d J_vehicle = -root_ * J_point * R_camera_vehicle;
+    J.leftCols<3>() = -J_vehicle * so3_exp(-turn);
+    J.rightCols<3>() = J_vehicle * skew(p_vehicle) * so3_right_jacobian(turn);
     return true;
   }
+
+ private:
+  MountedCamera mounted_;
+  Eigen::Vector3d p_initial_;
+  Eigen::Vector2d pixel_;
+  Eigen::Matrix2d root_;
 };
 
-struct PriorCost {
-  Step expected;
-  Matrix6d root;
+class PriorCost final : public ceres::SizedCostFunction<6, 6> {
+ public:
+  PriorCost(const Step& expected, Matrix6d root) : expected_(expected), root_(std::move(root)) {}
 
-  template <typename T>
-  bool operator()(const T* step, T* residual) const {
-    Eigen::Matrix<T, 6, 1> off;
-    for (int i = 0; i < 6; ++i) off(i) = step[i] - T(expected[at(i)]);
-    Eigen::Map<Eigen::Matrix<T, 6, 1>> e(residual);
-    e = root.cast<T>() * off;
+  bool Evaluate(const double* const* parameters,
+                double* residual,
+                double** jacobians) const override {
+    const Vector6d off =
+        Eigen::Map<const Vector6d>(parameters[0]) - Eigen::Map<const Vector6d>(expected_.data());
+    Eigen::Map<Vector6d> e(residual);
+    e = root_ * off;
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> J(jacobians[0]);
+    J = root_;
     return true;
   }
+
+ private:
+  Step expected_;
+  Matrix6d root_;
 };
 
 // Matrix A with A^T A = the inverse of the covariance of the error, at the initial pose.
@@ -205,8 +227,8 @@ std::optional<LandmarkPose> solve_landmark_pose(const Rig& rig,
     const auto root =
         information_root(mounted, pixels[i], T_camera_map[at(pixels[i].camera)], options.sigma_px);
     if (!root) continue;
-    terms.costs.push_back(std::make_unique<ceres::AutoDiffCostFunction<PixelCost, 2, 6>>(
-        new PixelCost{mounted, T_vehicle_map * pixels[i].p_map, pixels[i].pixel, *root}));
+    terms.costs.push_back(std::make_unique<PixelCost>(mounted, T_vehicle_map * pixels[i].p_map,
+                                                      pixels[i].pixel, *root));
     terms.pixel.push_back(i);
     problem.AddResidualBlock(terms.costs.back().get(), &loss, step.data());
   }
@@ -217,8 +239,8 @@ std::optional<LandmarkPose> solve_landmark_pose(const Rig& rig,
     const Eigen::Vector3d turn = so3_log(T_initial_prior.linear());
     const Eigen::Vector3d& way = T_initial_prior.translation();
     const Step expected{way.x(), way.y(), way.z(), turn.x(), turn.y(), turn.z()};
-    prior_cost = std::make_unique<ceres::AutoDiffCostFunction<PriorCost, 6, 6>>(new PriorCost{
-        expected, prior->information.llt().matrixU() * perturbation_of_step(expected)});
+    prior_cost = std::make_unique<PriorCost>(
+        expected, prior->information.llt().matrixU() * perturbation_of_step(expected));
     problem.AddResidualBlock(prior_cost.get(), nullptr, step.data());
   }
   const auto outcome = solve_by_ceres(

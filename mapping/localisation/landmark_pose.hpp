@@ -52,8 +52,8 @@ struct CauchyMoments {
 
 /// Minimises the reprojection errors of landmarks by Ceres [metric-semantic maps, section IV-C].
 /// An error is normalised by the covariance of the corner and of the landmark, seen from `initial`;
-/// Cauchy loss. `prior`: what else is known of the pose; empty: nothing. Derivatives: Ceres' dual
-/// numbers through `project_with`. One thread. Empty if the pose is not determined.
+/// Cauchy loss. `prior`: what else is known of the pose; empty: nothing. One thread. Empty if the
+/// pose is not determined.
 ///
 /// Groups for the pull: the landmarks of one camera in one eighth of the horizon, whose errors have
 /// causes in common. With J, r and H of the normal equations and g = J^T r of a group,
