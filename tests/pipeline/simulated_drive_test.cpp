@@ -107,6 +107,13 @@ void kill_camera(const fs::path& copy, const std::string& camera) {
   std::ofstream(file) << text.substr(0, text.find('\n', text.size() / 2) + 1);
 }
 
+// Covariances take a third of a build; the tests of the nominal map judge them.
+MapOptions without_covariances() {
+  MapOptions options;
+  options.covariances = false;
+  return options;
+}
+
 void expect_accurate(const fs::path& map_file, const Drive& truth, double factor) {
   const auto error = test::error_of(load_map(map_file), truth, false);
   EXPECT_LT(error.median_m, 0.05 * factor);
@@ -204,7 +211,7 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     SCOPED_TRACE("wheels 1 % too large");
     const auto copy = linked_copy(drive_folder, folder / "large_wheels");
     enlarge_wheels(copy);
-    build_map({copy}, folder / "large_wheels.gpkg", {});
+    build_map({copy}, folder / "large_wheels.gpkg", without_covariances());
     expect_accurate(folder / "large_wheels.gpkg", drive, 1.0);
     const Map map = load_map(folder / "large_wheels.gpkg");
     EXPECT_NEAR(map.sessions.front().wheel_scale, 1.0 / 1.01, 0.006);
@@ -215,7 +222,7 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     SCOPED_TRACE("a model of what is wrong");
     const auto copy = linked_copy(drive_folder, folder / "misstated");
     misstate_lenses_and_clock(copy);
-    MapOptions options;
+    MapOptions options = without_covariances();
     build_map({copy}, folder / "misled.gpkg", options);
     EXPECT_GT(test::error_of(load_map(folder / "misled.gpkg"), drive, false).median_m, 0.1);
     options.model = {{"cam.focal", 0.04}, {"wheels0.latency", 0.2}};
@@ -224,7 +231,7 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
   }
   {
     SCOPED_TRACE("vision alone");
-    MapOptions options;
+    MapOptions options = without_covariances();
     options.tracking.use_wheels = false;
     const auto summary = build_map({drive_folder}, folder / "vision.gpkg", options);
     EXPECT_EQ(summary.scale_source, ScaleSource::kCameraHeight);
@@ -238,7 +245,7 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     SCOPED_TRACE("a camera dies half way");
     const auto copy = linked_copy(drive_folder, folder / "dead_camera");
     kill_camera(copy, "cam0");
-    const auto summary = build_map({copy}, folder / "dead_camera.gpkg", {});
+    const auto summary = build_map({copy}, folder / "dead_camera.gpkg", without_covariances());
     EXPECT_FALSE(summary.warnings.empty());
     expect_accurate(folder / "dead_camera.gpkg", drive, 1.0);
   }
