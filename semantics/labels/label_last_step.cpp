@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "semantics/labels/classes_in_use.hpp"
+#include "semantics/labels/label_conflict.hpp"
 
 namespace roadbook {
 namespace {
