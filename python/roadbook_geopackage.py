@@ -285,7 +285,7 @@ class GeoPackage:
         if len(header) < 100 or not header.startswith(b"SQLite format 3\0"):
             raise self._bad("map", "no SQLite database", "a map written by roadbook")
         beside = os.path.realpath(self.path)
-        (page,), (pages,) = struct.unpack_from(">H", header, 16), struct.unpack_from(">I", header, 28)
+        page, pages = struct.unpack_from(">H10xI", header, 16)
         whole = pages * (65536 if page == 1 else page)
         journal = os.path.exists(beside + "-journal")
         if header[24:28] == header[92:96] and status.st_size < whole and not journal:
@@ -293,8 +293,8 @@ class GeoPackage:
         self._budget_of_query = 200 + status.st_size // 2000
         if 2 not in header[18:20]:
             return "mode=ro"
-        # Another program left the file in WAL mode. SQLite would then create a -shm file beside it,
-        # and fail on a read-only disk. Without changes in a -wal file, the file itself is whole, and
+        # Another program left the file in WAL mode. SQLite would then create a -shm file beside it
+        # and fail on a read-only disk. Without changes in a -wal file, the file itself is whole:
         # `immutable` reads it as it is.
         if os.path.exists(beside + "-wal") and os.path.getsize(beside + "-wal") > 0:
             raise self._bad("map", "changes of another program that are not in the file (-wal)",
@@ -303,7 +303,7 @@ class GeoPackage:
 
     def _check(self) -> None:
         assert self._db is not None
-        # A damaged file must not make a query run for ever: its steps are limited by the file's size.
+        # A damaged file must not make a query run for ever: the file's size limits its steps.
         self._steps_left = 0
 
         def spend() -> bool:
@@ -340,7 +340,7 @@ class GeoPackage:
     def _refusal(self, error: Exception) -> BadMap:
         got = str(error) or "no memory"
         if os.path.exists(os.path.realpath(self.path) + "-journal"):
-            return self._bad("database", got + "; a program changes the file or was killed (-journal)",
+            return self._bad("database", got + "; a change is not complete (-journal)",
                              "a whole map (`roadbook check` takes back a change that was cut off)")
         if "locked" in got:
             return self._bad("database", got, "a map that no other program is writing")
