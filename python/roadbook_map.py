@@ -17,8 +17,8 @@ Units are SI and radians. `T_a_b` maps coordinates in frame b to coordinates in 
 4x4 matrix as nested lists, row by row. Frames: `map`; `frame`, one of the fixed map frames;
 `vehicle` (rear axle, x forward, y left, z up); `camera` (z forward, x right, y down). Pixels are
 of the full image, centre of the first pixel (0, 0). Stamps are nanoseconds since 1970 as integers.
-What is not known is None, never 0 or NaN. Stored numbers are those of the file to the last bit;
-T_map_vehicle and p_map are products of stored ones, rounded.
+What is not known is None, never 0 or NaN. Numbers are those of the file to the last bit, and the
+products T_map_vehicle and p_map are those of the library on x86-64.
 """
 
 from __future__ import annotations
@@ -172,10 +172,13 @@ def _transform(T: Matrix, p: list[float]) -> list[float]:
 
 
 def _product(A: Matrix, B: Matrix) -> Matrix:
-    rotation = [[a[0] * B[0][c] + a[1] * B[1][c] + a[2] * B[2][c] for c in range(3)]
-                for a in A[:3]]
-    place = _transform(A, [B[0][3], B[1][3], B[2][3]])
-    return [[*rotation[r], place[r]] for r in range(3)] + [[0.0, 0.0, 0.0, 1.0]]
+    # Sums in the order of Eigen's code for SSE2, which takes rows 0 and 1 together and row 2 apart:
+    # the rounding is then that of the library on x86-64.
+    def element(r: int, c: int) -> float:
+        x, y, z = A[r][0] * B[0][c], A[r][1] * B[1][c], A[r][2] * B[2][c]
+        return x + y + z if r < 2 else x + (y + z)
+    rows = [[*(element(r, c) for c in range(3)), element(r, 3) + A[r][3]] for r in range(3)]
+    return rows + [[0.0, 0.0, 0.0, 1.0]]
 
 
 class MapFile(GeoPackage):

@@ -233,6 +233,11 @@ void print_layers(const std::filesystem::path& file) {
 void print_map(const std::filesystem::path& file) {
   const Map map = load_map_with_corners(file);
   const MapMeta meta = load_meta(file);
+#if defined(__x86_64__) && !defined(__AVX__) && !defined(__FMA__)
+  Line("sums").text("plain");  // without fused operations, in the order of SSE2
+#else
+  Line("sums").text("other");
+#endif
   Line("meta").integer(meta.schema_version).text(meta.state).text(meta.digest);
   for (const auto& [key, value] : meta.values) Line("meta_value").text(key).text(value);
   print_sessions(map);
