@@ -11,15 +11,15 @@ namespace roadbook {
 namespace {
 
 // Chances to be seen by a session, and how many landmarks have each. Landmarks that are seldom seen
-// cannot be told from those that are gone, and both are of no use.
+// cannot be distinguished from landmarks that have gone, and both are of no use.
 constexpr std::array<double, 3> kChances{0.65, 0.8, 0.95};
 constexpr std::array<double, 3> kShares{0.2, 0.4, 0.4};
 constexpr double kGoes = 0.1;              // between two sessions
 constexpr double kComesBack = 0.03;        // the same
-constexpr double kSeenThoughGone = 0.005;  // another thing that looks alike, at the same place
+constexpr double kSeenThoughGone = 0.005;  // another thing with the same look at its place
 constexpr double kFullChance = 0.25;       // of the median number of images: enough to be seen
 
-// What one session tells of one landmark.
+// The evidence of one session about one landmark.
 struct Evidence {
   bool seen = false;
   double share = 1.0;  // of a full chance to see it

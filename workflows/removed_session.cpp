@@ -86,11 +86,11 @@ void refuse_homeless(const LabelMoves& moves,
                      int session,
                      const RemoveRequest& request) {
   if (moves.homeless.empty() || request.drop_labels) return;
-  constexpr std::size_t kNamed = 5;
+  constexpr std::size_t kIdsInLine = 5;
   std::string ids;
-  for (std::size_t i = 0; i < moves.homeless.size() && i < kNamed; ++i)
+  for (std::size_t i = 0; i < moves.homeless.size() && i < kIdsInLine; ++i)
     ids += (ids.empty() ? "" : ", ") + std::to_string(moves.homeless[i].id);
-  if (moves.homeless.size() > kNamed) ids += ", ...";
+  if (moves.homeless.size() > kIdsInLine) ids += ", ...";
   throw Refused(
       to_line({Severity::kError, request.map.string(), 0, "labels",
                std::to_string(moves.homeless.size()) + " (" + ids + ") that no session before " +

@@ -33,7 +33,7 @@ struct RemoveResult {
 /// map with the session and with all labels in their places.
 ///
 /// Throws InvalidOption (no such session), Refused (the only session, or labels that no earlier
-/// session shows, unless `drop_labels`), BadInput, StorageError. The map then stays as it is.
+/// session shows, unless `drop_labels`), BadInput, StorageError. The map then is unchanged.
 RemoveResult remove_session(const RemoveRequest& request);
 
 }  // namespace roadbook

@@ -20,7 +20,7 @@ namespace {
 // Of the variance that independent errors leave if all other poses are known. A sound map has more:
 // its poses are not known, and its covariances count common errors.
 constexpr double kLeastShare = 0.5;
-// Of landmarks, whose covariance is given the poses, the median of the map says what is usual.
+// Of landmarks, whose covariance is given the poses, the median of the map gives the usual factor.
 constexpr double kLeastOfMedian = 0.05;
 
 Matrix6d covariance_of_pose(const Matrix6d& information) {

@@ -19,8 +19,8 @@ namespace roadbook {
 [[nodiscard]] std::vector<Problem> deep_map_problems(const Map& map);
 
 /// Landmarks whose descriptor is unlike those of all their key points in the recordings. `drives`:
-/// the recordings at hand, by session; null: none. Landmarks with a view of a session that is not
-/// at hand are not judged. Reads the images of all keyframes.
+/// the recordings by session; null: missing. Landmarks with a view of a session whose recording is
+/// missing are not judged. Reads the images of all keyframes.
 [[nodiscard]] std::vector<Problem> descriptor_problems(const Map& map,
                                                        const std::vector<const Drive*>& drives,
                                                        int num_threads = 0);

@@ -15,8 +15,8 @@
 namespace roadbook {
 namespace {
 
-// What a loop may be off beside its own uncertainty: it was measured between images of which the
-// adjustment knows more.
+// Allowed error of a loop in addition to its own uncertainty, because the adjustment knows more
+// than the two images of the loop.
 constexpr double kLoopSlackM = 0.1;
 constexpr double kLoopSlackRad = 0.02;
 constexpr double kLoopSigmas = 6.0;

@@ -15,7 +15,7 @@
 namespace roadbook {
 namespace {
 
-// Standard deviations of a step of odometry that may be wrong by a drift nobody has noticed.
+// Standard deviations of a step of odometry that may drift.
 constexpr double kStepSigmaM = 0.005;
 constexpr double kStepSigmaShare = 0.01;  // of its length
 constexpr double kStepSigmaRad = 0.002;

@@ -13,7 +13,7 @@ namespace roadbook {
 /// common landmarks, and everything is adjusted from stored observations. No recording is read.
 /// Map frames do not move. Adjusted covariances replace the old ones.
 ///
-/// An edit must agree with what is known: Refused names the accepted loops of the map, the steps of
+/// An edit must agree with the map: Refused names the accepted loops of the map, the steps of
 /// odometry or the other edits that contradict it. Refused also for places that the map does not
 /// have (`motion_of_edit`); Interrupted. Deterministic on any number of threads.
 [[nodiscard]] Map edited_map(const Map& map,

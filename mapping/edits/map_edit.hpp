@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-// What a person knows about a map and the program did not find (docs/guide/mapping.md, "Correct a
+// What a person knows about a map and the program did not find (docs/guide/map_life.md, "Correct a
 // map by hand"). Edits name poses by session and time, so that they stay valid when the map is
 // built again.
 

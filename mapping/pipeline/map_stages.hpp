@@ -54,7 +54,7 @@ struct Adjusted {
   LandmarkCovariances landmark_covariance;  ///< of `tracks`; empty before add_covariances
 };
 
-/// What `adjust` knows beside tracks and loops.
+/// Further terms and knowledge of `adjust`.
 struct AdjustTerms {
   std::vector<TrackMatch> same;  ///< tracks of one landmark
   std::vector<PosePrior> priors;

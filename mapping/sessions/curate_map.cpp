@@ -103,7 +103,7 @@ std::vector<double> values_of(const Map& map) {
 }
 
 // The greedy cover: next comes the landmark with the largest value times number of places that need
-// it. The number only falls, so that a landmark is looked at again only when it comes first.
+// it. The number only falls, so that only the first landmark must be counted again.
 Curation cover_of(const Places& places, const std::vector<double>& values, int per_place) {
   Curation curation;
   curation.per_place = per_place;

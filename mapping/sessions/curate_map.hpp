@@ -50,8 +50,8 @@ struct CurateSummary {
   std::string digest;  ///< of the map, unchanged after a dry run
 };
 
-/// Curates the map file `map`, or only tells what it would do. Layers and tables stay. Throws
-/// BadInput, StorageError; the map then stays as it is.
+/// Curates the map file `map`, or only computes the summary (`dry_run`). Layers and tables stay.
+/// Throws BadInput, StorageError; the map then is unchanged.
 CurateSummary curate_map(const std::filesystem::path& map,
                          const CurateOptions& options,
                          bool dry_run);

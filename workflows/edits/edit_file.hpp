@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-// Files of edits (docs/guide/mapping.md, "Correct a map by hand"): a list `edits` of mappings with
+// Files of edits (docs/guide/map_life.md, "Correct a map by hand"): a list `edits` of mappings with
 // one of the keys loop, same_points, not_a_loop and anchor; or one such key alone.
 
 /// Throws BadInput with all faults of the file.

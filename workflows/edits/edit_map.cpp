@@ -103,7 +103,7 @@ EditResult edit_map(const EditRequest& request, Messages& messages) {
   const std::optional<Map> before = stored_map_before_edits(request.map);
   const bool is_new = result.edits.empty();
   if (!before && !is_new && request.undo != 0) {
-    // A session came after the edits: nobody knows the map without this one.
+    // A session came after the edits: the map without this edit is not stored.
     MapUpdate update(request.map);
     write_edits(update, edits, nullptr);
     update.commit();

@@ -21,7 +21,7 @@ struct EditResult {
   double moved_median_m = 0.0;  ///< of the poses, by this command
   double moved_max_m = 0.0;
   bool undone_later =
-      false;  ///< the edit is gone, but its effect stays until the map is built again
+      false;  ///< the edit is removed, but its effect stays until the map is built again
   std::vector<std::string> dropped;  ///< layers that no longer fit
   std::string digest;                ///< of the map
 };
@@ -33,7 +33,7 @@ struct EditResult {
 ///
 /// Layers made from the poses go if poses move; labels move with the poses. Throws Refused (an edit
 /// that contradicts the map), InvalidOption, BadInput, StorageError, Interrupted. The map then
-/// stays as it is.
+/// is unchanged.
 EditResult edit_map(const EditRequest& request, Messages& messages);
 
 /// Makes the edits of a map again after a build, which has carried their table over. Returns
