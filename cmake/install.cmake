@@ -1,6 +1,7 @@
-# `cmake --install`: the program, the libraries below it with their headers, and a package for
-# find_package(roadbook). Programs link roadbook::workflows, or the module they need (roadbook::mapping),
-# and include headers as "mapping/map.hpp". The command itself (apps) is no library for others.
+# `cmake --install`: the program, the libraries below it with their headers, a reader of maps in Python,
+# and a package for find_package(roadbook). Programs link roadbook::workflows, or the module they need
+# (roadbook::mapping), and include headers as "mapping/map.hpp". The command itself (apps) is no library
+# for others.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -25,6 +26,10 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/roadbook-config-version.cma
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/roadbook-config.cmake ${CMAKE_BINARY_DIR}/roadbook-config-version.cmake
         DESTINATION ${package_folder} COMPONENT libraries)
+# Reads map files without the libraries (docs/guide/library.md).
+install(PROGRAMS python/roadbook_map.py DESTINATION ${CMAKE_INSTALL_DATADIR}/roadbook/python COMPONENT python)
+install(FILES python/roadbook_geopackage.py DESTINATION ${CMAKE_INSTALL_DATADIR}/roadbook/python
+        COMPONENT python)
 if(TARGET roadbook)
   install(TARGETS roadbook DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()

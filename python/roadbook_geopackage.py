@@ -63,7 +63,7 @@ class Tile(NamedTuple):
     column: int
     row: int
     corner: tuple[float, float]  #: outer corner of the first pixel: x, y [m]
-    data: bytes                  #: a PNG, or a TIFF of UInt16 or Float32
+    data: bytes                  #: a PNG of 8 or 16 bits (UInt16), or a TIFF of Float32
 
 
 class _Fault(Exception):
