@@ -38,9 +38,7 @@ class Hidden {
 };
 
 TEST_F(Visits, ExtendAMapOneAfterAnother) {
-  const std::filesystem::path file = folder() / "extended.gpkg";
-  std::filesystem::remove(file);
-  build_map({drives()[0]}, file, {});
+  const std::filesystem::path file = map_of_first("extended.gpkg");
   const Map first = load_map(file);
   {
     const Hidden away(drives()[0]);
@@ -72,9 +70,7 @@ TEST_F(Visits, ExtendAMapOneAfterAnother) {
 }
 
 TEST_F(Visits, LeaveTheMapAsItIsWhereNothingMayMove) {
-  const std::filesystem::path file = folder() / "frozen.gpkg";
-  std::filesystem::remove(file);
-  build_map({drives()[0]}, file, {});
+  const std::filesystem::path file = map_of_first("frozen.gpkg");
   const Map before = load_map(file);
   MapOptions none;
   none.adjust = SessionAdjust::kNone;

@@ -40,8 +40,7 @@ std::string bytes_of(const fs::path& file) {
 // A later visit, with other parked cars and people, in the map of the first one.
 TEST_F(Visits, AreLocalisedInTheMapOfTheFirstWithoutAGuess) {
   const fs::path second = drives()[1];
-  const fs::path map = folder() / "place.gpkg";
-  static_cast<void>(build_map({drives()[0]}, map, {}));
+  const fs::path map = map_of_first("place.gpkg");
   const std::string before = bytes_of(map);
   const LocaliseResult result = localised(second, map, 1);
   EXPECT_EQ(bytes_of(map), before);

@@ -113,9 +113,7 @@ TEST_F(Visits, HaveTheirPlantedFaultsFound) {
 
 // The landmarks that stay must localise a visit as well as all did.
 TEST_F(Visits, AreLocalisedInACuratedMapAsWell) {
-  const std::filesystem::path file = folder() / "curated.gpkg";
-  std::filesystem::remove(file);
-  build_map({drives()[0]}, file, {});
+  const std::filesystem::path file = map_of_first("curated.gpkg");
   const std::size_t of_one = load_map(file).landmarks.size();
   extend_map(drives()[1], file, {});
   const auto before = figures_of(drives()[2], file);
@@ -142,9 +140,7 @@ TEST_F(Visits, AreLocalisedInACuratedMapAsWell) {
 }
 
 TEST_F(Visits, LeaveNothingBehindWhenTheyAreRemoved) {
-  const std::filesystem::path file = folder() / "removed.gpkg";
-  std::filesystem::remove(file);
-  build_map({drives()[0]}, file, {});
+  const std::filesystem::path file = map_of_first("removed.gpkg");
   const Map before = load_map_with_corners(file);
   MapOptions none;
   none.adjust = SessionAdjust::kNone;
@@ -207,9 +203,7 @@ TEST_F(Visits, LeaveNothingBehindWhenTheyAreRemoved) {
 
 // A label that no earlier session shows is named, and deleted only on demand.
 TEST_F(Visits, KeepLabelsThatNoOtherShows) {
-  const std::filesystem::path file = folder() / "homeless.gpkg";
-  std::filesystem::remove(file);
-  build_map({drives()[0]}, file, {});
+  const std::filesystem::path file = map_of_first("homeless.gpkg");
   extend_map(drives()[1], file, {});
   const Map map = load_map(file);
   {

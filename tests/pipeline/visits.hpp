@@ -29,6 +29,17 @@ class Visits : public ::testing::Test {
     static const MapSummary summary = build_map(drives(), folder() / "together.gpkg", {});
     return summary;
   }
+  /// A copy of the map of the first visit alone, which is built once.
+  static std::filesystem::path map_of_first(const std::string& name) {
+    static const std::filesystem::path first = [] {
+      const auto file = folder() / "first.gpkg";
+      static_cast<void>(build_map({drives()[0]}, file, {}));
+      return file;
+    }();
+    const auto copy = folder() / name;
+    std::filesystem::copy_file(first, copy, std::filesystem::copy_options::overwrite_existing);
+    return copy;
+  }
 
  private:
   static std::vector<std::filesystem::path> render() {
