@@ -31,6 +31,7 @@ Verb check_verb();
 Verb import_verb();
 Verb map_verb();
 Verb calibrate_verb();
+Verb compare_verb();
 Verb curate_verb();
 Verb edit_verb();
 Verb localise_verb();
