@@ -29,41 +29,66 @@ class BadMap(Exception):
 
 
 class Geometry(NamedTuple):
-    """A geometry in the map frame [m]."""
-    type: str          #: Point, LineString, Polygon, MultiPoint, MultiLineString, MultiPolygon
-    axes: str          #: xy, xyz, xym or xyzm; the meaning of m depends on the layer
-    coordinates: Any   #: as in GeoJSON: point (x, y, ...); line: points; polygon: rings of points
+    """A geometry in the map frame [m].
+
+    type: Point, LineString, Polygon, MultiPoint, MultiLineString, MultiPolygon
+    axes: xy, xyz, xym or xyzm; the meaning of m depends on the layer
+    coordinates: as in GeoJSON: point (x, y, ...); line: points; polygon: rings of points
+    """
+
+    type: str
+    axes: str
+    coordinates: Any
 
 
 class Level(NamedTuple):
-    """A zoom level of a raster; the largest zoom has all pixels."""
+    """A zoom level of a raster; the largest zoom has all pixels.
+
+    columns: of tiles
+    rows: of tiles
+    tile_width: [px]
+    tile_height: [px]
+    """
+
     zoom: int
-    columns: int      #: of tiles
-    rows: int         #: of tiles
-    tile_width: int   #: [px]
-    tile_height: int  #: [px]
+    columns: int
+    rows: int
+    tile_width: int
+    tile_height: int
     pixel_x_m: float
     pixel_y_m: float
 
 
 class Raster(NamedTuple):
-    """Georeference of a raster: x grows with columns, y falls with rows."""
+    """Georeference of a raster: x grows with columns, y falls with rows.
+
+    corner: outer corner of the first pixel of tile (0, 0): x, y [m]
+    extent: of what is shown: least x, least y, most x, most y [m]
+    levels: ascending in zoom
+    coverage: datatype (integer or float), scale, offset and data_null (pixel without a value)
+        of a raster of numbers: value = pixel * scale + offset; None: an image
+    """
+
     name: str
     description: str
-    corner: tuple[float, float]        #: outer corner of the first pixel of tile (0, 0): x, y [m]
-    extent: tuple[float, ...] | None   #: of what is shown: least x, least y, most x, most y [m]
-    levels: list[Level]                #: ascending in zoom
-    #: datatype (integer or float), scale, offset and data_null (pixel without a value) of a raster
-    #: of numbers: value = pixel * scale + offset; None: an image
+    corner: tuple[float, float]
+    extent: tuple[float, ...] | None
+    levels: list[Level]
     coverage: Row | None
 
 
 class Tile(NamedTuple):
+    """A tile of a raster.
+
+    corner: outer corner of the first pixel: x, y [m]
+    data: a PNG of 8 or 16 bits (UInt16), or a TIFF of Float32
+    """
+
     zoom: int
     column: int
     row: int
-    corner: tuple[float, float]  #: outer corner of the first pixel: x, y [m]
-    data: bytes                  #: a PNG of 8 or 16 bits (UInt16), or a TIFF of Float32
+    corner: tuple[float, float]
+    data: bytes
 
 
 class _Fault(Exception):

@@ -52,106 +52,177 @@ VEHICLE_VALUES = ("length_m", "width_m", "height_m", "rear_overhang_m", "wheelba
 
 
 class Camera(NamedTuple):
+    """A camera on the vehicle, as calibrated.
+
+    model: pinhole-radtan, pinhole-equidistant, omni-radtan or ds-none
+    width: [px]
+    height: [px]
+    max_angle_rad: largest angle from the optical axis
+    time_offset_s: to add to the camera's stamps
+    parameters: 9 numbers, those that the model does not use are zero
+    T_vehicle_camera: 4x4
+    """
+
     name: str
-    model: str                #: pinhole-radtan, pinhole-equidistant, omni-radtan or ds-none
-    width: int                #: [px]
-    height: int               #: [px]
-    max_angle_rad: float      #: largest angle from the optical axis
-    time_offset_s: float      #: to add to the camera's stamps
-    parameters: list[float]   #: 9 numbers, those that the model does not use are zero
-    T_vehicle_camera: Matrix  #: 4x4
+    model: str
+    width: int
+    height: int
+    max_angle_rad: float
+    time_offset_s: float
+    parameters: list[float]
+    T_vehicle_camera: Matrix
 
 
 class Session(NamedTuple):
-    """One drive in the map."""
+    """One drive in the map.
+
+    drive_digest: SHA-256 of the drive's files
+    drive_path: relative to the map's folder
+    wheel_scale: estimated factor on the wheels' distance; wheel_scale_sigma: its deviation
+    scale_source: wheels, camera_height or free
+    scale_sigma: relative deviation of the scale of the poses
+    localised_share: of its keyframes; None: mapped without a map before it
+    wheels: keys WHEEL_VALUES
+    vehicle: keys VEHICLE_VALUES
+    vehicle_source: none, measured, file or option
+    """
+
     name: str
-    drive_digest: str                  #: SHA-256 of the drive's files
-    drive_path: str | None             #: relative to the map's folder
+    drive_digest: str
+    drive_path: str | None
     t_begin_ns: int
     t_end_ns: int
-    wheel_scale: float                 #: estimated factor on the wheels' distance
+    wheel_scale: float
     wheel_scale_sigma: float | None
-    scale_source: str                  #: wheels, camera_height or free
-    scale_sigma: float | None          #: relative
-    localised_share: float | None      #: of its keyframes; None: mapped without a map before it
+    scale_source: str
+    scale_sigma: float | None
+    localised_share: float | None
     cameras: list[Camera]
-    wheels: dict[str, float] | None    #: keys WHEEL_VALUES
-    vehicle: dict[str, float | None]   #: keys VEHICLE_VALUES
-    vehicle_source: str                #: none, measured, file or option
+    wheels: dict[str, float] | None
+    vehicle: dict[str, float | None]
+    vehicle_source: str
 
 
 class WheelMotion(NamedTuple):
-    """Motion from the session's pose before, by the wheels."""
-    motion: list[float]        #: x [m], y [m], heading [rad] in the vehicle frame of that pose
-    covariance: Matrix | None  #: 3x3
+    """Motion from the session's pose before, by the wheels.
+
+    motion: x [m], y [m], heading [rad] in the vehicle frame of that pose
+    covariance: 3x3, of the motion
+    distance_m: along the path, at least 0
+    """
+
+    motion: list[float]
+    covariance: Matrix | None
     distance_m: float
     reversing: bool
 
 
 class Pose(NamedTuple):
-    """A vehicle pose with images (keyframe). Its id is its place in the list."""
+    """A vehicle pose with images (keyframe). Its id is its place in the list.
+
+    drive_frame: index of the images in the drive
+    map_frame: index of its frame in map_frames
+    T_map_vehicle: 4x4, map_frames[map_frame] times T_frame_vehicle
+    T_frame_vehicle: 4x4, as stored
+    covariance: 6x6 of the right perturbation (x, y, z [m], then rotation [rad]; vehicle frame),
+        relative to the first pose of its piece, which has zeros
+    travelled_m: since the session began
+    after_gap: odometry does not know the motion from the pose before
+    piece: poses of different pieces have no common place
+    """
+
     session: int
     t_ns: int
-    drive_frame: int           #: index of the images in the drive
+    drive_frame: int
     map_frame: int
-    T_map_vehicle: Matrix      #: 4x4: map_frames[map_frame] times T_frame_vehicle
-    T_frame_vehicle: Matrix    #: 4x4, as stored
-    #: 6x6 of the right perturbation (x, y, z, rotation; vehicle frame), relative to the first pose
-    #: of its piece, which has zeros
+    T_map_vehicle: Matrix
+    T_frame_vehicle: Matrix
     covariance: Matrix | None
-    travelled_m: float         #: since the session began
+    travelled_m: float
     reversing: bool
-    after_gap: bool            #: odometry does not know the motion from the pose before
-    piece: int                 #: poses of different pieces have no common place
+    after_gap: bool
+    piece: int
     wheels: WheelMotion | None
 
 
 class Landmark(NamedTuple):
-    """A point that cameras recognise. Its id is its place in the list."""
+    """A point that cameras recognise. Its id is its place in the list.
+
+    p_map: x, y, z [m] in the map
+    p_frame: x, y, z [m] in its map frame, as stored
+    covariance: 3x3 [m^2], map axes, given the poses
+    ground: lies on the driven surface
+    descriptor: 64 bytes
+    """
+
     map_frame: int
-    p_map: list[float]         #: x, y, z [m] in the map
-    p_frame: list[float]       #: x, y, z [m] in its map frame, as stored
-    covariance: Matrix | None  #: 3x3 [m^2], map axes, given the poses
-    ground: bool               #: lies on the driven surface
-    descriptor: bytes          #: 64 bytes
+    p_map: list[float]
+    p_frame: list[float]
+    covariance: Matrix | None
+    ground: bool
+    descriptor: bytes
 
 
 class Observation(NamedTuple):
+    """A landmark in an image of a pose.
+
+    u: [px]
+    v: [px]
+    """
+
     landmark: int
     pose: int
     camera: int
-    u: float         #: [px]
-    v: float         #: [px]
+    u: float
+    v: float
     sigma_px: float
 
 
 class LoneCorner(NamedTuple):
-    """A corner that no landmark explains."""
+    """A corner that no landmark explains.
+
+    u: [px]
+    v: [px]
+    descriptor: 64 bytes
+    """
+
     pose: int
     camera: int
-    u: float           #: [px]
-    v: float           #: [px]
-    descriptor: bytes  #: 64 bytes
+    u: float
+    v: float
+    descriptor: bytes
 
 
 class LandmarkSession(NamedTuple):
-    """What a later session saw of a landmark."""
+    """What a later session saw of a landmark.
+
+    expected: localised poses in whose images it lay
+    seen: of them, poses that saw it
+    last_ns: when it was seen for the last time
+    """
+
     landmark: int
     session: int
-    expected: int        #: localised poses in whose images it lay
-    seen: int            #: of them, poses that saw it
-    last_ns: int | None  #: when it was seen for the last time
+    expected: int
+    seen: int
+    last_ns: int | None
 
 
 class Loop(NamedTuple):
-    """A revisit, accepted or refused."""
+    """A revisit, accepted or refused.
+
+    T_from_to: 4x4
+    information: 6x6 of the right perturbation, inverse covariance
+    weight: of the robust solver, 0 to 1
+    """
+
     from_pose: int
     to_pose: int
-    T_from_to: Matrix    #: 4x4
-    information: Matrix  #: 6x6 of the right perturbation
+    T_from_to: Matrix
+    information: Matrix
     inliers: int
     accepted: bool
-    weight: float        #: of the robust solver, 0 to 1
+    weight: float
     reason: str
 
 

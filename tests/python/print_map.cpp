@@ -213,7 +213,7 @@ void print_layers(const std::filesystem::path& file) {
       Line line("feature");
       line.text(info.name).text(kTypes[type]).text(kAxes[type]);
       for (const Eigen::Vector4d& p : feature.points)
-        layer.type == GeometryType::kPointZM ? line.matrix(p) : line.matrix(p.head<3>());
+        line.matrix(p.head(layer.type == GeometryType::kPointZM ? 4 : 3));
       for (std::size_t i = 0; i < layer.fields.size(); ++i)
         line.text(layer.fields[i].name).field(feature.values[i]);
     }
