@@ -6,6 +6,7 @@
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "mapping/layers/map_layers_table.hpp"
+#include "mapping/store/map_bytes.hpp"
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_event_log.hpp"
 #include "mapping/store/map_file_content.hpp"
@@ -194,8 +195,11 @@ void MapFileBuilder::finish(const Map& map,
   const std::filesystem::path file = beside(impl_->map, ".new");
   remove_database(file);
   try {
-    if (options.keep_other_layers && std::filesystem::exists(impl_->map))
+    if (options.keep_other_layers && std::filesystem::exists(impl_->map)) {
       copy_map_file(impl_->map, file);
+      // It is the map before edits no more: it lacks what this build adds.
+      SqlDatabase(file, SqlMode::kReadWrite).run("DROP TABLE IF EXISTS " + sql_name(kBeforeTable));
+    }
     write_map_content(file, map, meta, options);
     if (std::filesystem::exists(impl_->map)) {
       carry_event_logs(impl_->map, file);

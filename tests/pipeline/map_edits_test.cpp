@@ -228,6 +228,29 @@ TEST_F(Visits, AreAsBeforeWhenTheEditIsTakenBack) {
   EXPECT_THROW(static_cast<void>(taken_back(file, 1)), InvalidOption);
 }
 
+// A session that came after an edit stays when the edit is taken back.
+TEST_F(Visits, StayWhenAnEditBeforeThemIsTakenBack) {
+  const fs::path file = map_of_first("later_session.gpkg");
+  const Map map = load_map(file);
+  MapEdit anchor;
+  anchor.kind = EditKind::kAnchor;
+  anchor.a = place_of(map, 40);
+  const Eigen::Isometry3d T = map.T_map_vehicle(40);
+  anchor.motion = {T.translation().x() + 1.0, T.translation().y(), heading_of(T)};
+  static_cast<void>(edited_by(file, edit_yaml(anchor)));
+  NoMessages messages;
+  MapRequest request;
+  request.drives = {drives()[1]};
+  request.map = file;
+  request.adjust = SessionAdjust::kNone;
+  static_cast<void>(map_drives(request, messages));
+  ASSERT_EQ(stored_edits(file).size(), 1U);
+  EXPECT_FALSE(stored_map_before_edits(file));
+  EXPECT_TRUE(taken_back(file, 1).undone_later);
+  EXPECT_EQ(load_map(file).sessions.size(), 2U);
+  EXPECT_TRUE(stored_edits(file).empty());
+}
+
 // Edits are written as they were read; what cannot be read is named with its line.
 TEST(EditFile, IsReadBackToTheBit) {
   const auto edits = parse_edits(R"(edits:
