@@ -128,9 +128,19 @@ EditResult edit_map(const EditRequest& request, Messages& messages) {
 
 bool repeat_edits(const std::filesystem::path& map, int num_threads, Messages& messages) {
   const MapHold hold(map);
-  const std::vector<MapEdit> edits = stored_edits(map);
+  std::vector<MapEdit> edits = stored_edits(map);
   if (edits.empty() || MapLayers(map).has(kBeforeTable)) return false;
   const Map before = load_map_with_corners(map);
+  const auto has = [&](const std::string& name) {
+    return std::any_of(before.sessions.begin(), before.sessions.end(),
+                       [&](const Session& session) { return session.name == name; });
+  };
+  const std::size_t lost = std::erase_if(edits, [&](const MapEdit& edit) {
+    return !has(edit.a.session) || (edit.kind != EditKind::kAnchor && !has(edit.b.session));
+  });
+  if (lost > 0)
+    messages.note(std::to_string(lost) +
+                  " edits name sessions that the map lacks; they are removed");
   EditResult result;
   store_edited(map, before,
                edited_map(before, edits, options_with(num_threads), messages.progress()), edits,
