@@ -114,10 +114,11 @@ void expect_documented_maps(const fs::path& folder) {
   for (const auto& [name, columns] : document.columns) missing.insert(name);
   for (const char* map : {"place.gpkg", "road.gpkg", "visit.gpkg"})
     compare_with_document(folder / map, document, missing);
-  // The manual draws no further kind of label. The other tables are those of the label server:
-  // tests/apps/map_file_document_test.cpp compares them.
+  // The manual draws no further kind of label and makes no edit. The other tables are those of the
+  // label server: tests/apps/map_file_document_test.cpp compares them.
   EXPECT_EQ(missing, (std::set<std::string>{"box_examples", "label_learning", "label_sightings",
-                                            "other_labels", "people_learning"}));
+                                            "map_before_edits", "map_edits", "other_labels",
+                                            "people_learning"}));
 }
 
 // Runs the main task of the manual from end to end: one drive through all verbs. The median error
