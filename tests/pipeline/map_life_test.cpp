@@ -118,6 +118,7 @@ TEST_F(Visits, AreLocalisedInACuratedMapAsWell) {
   const auto before = figures_of(drives()[2], file);
   const std::string digest = load_meta(file).digest;
   CurateOptions options;
+  options.per_place = 30;  // images of 320 x 240 pixels have few more
   const CurateSummary dry = curate_map(file, options, true);
   EXPECT_EQ(load_meta(file).digest, digest);
   const CurateSummary summary = curate_map(file, options, false);
