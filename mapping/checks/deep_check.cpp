@@ -15,9 +15,9 @@ namespace roadbook {
 namespace {
 
 constexpr double kSameKeyPointPx = 0.5;  // full-size image
-// Bits of 512 in which a descriptor differs from another view of its corner: up to 120 in sound
+// Bits of 512 in which a descriptor differs from another view of its corner: up to 190 in sound
 // maps. Random ones differ in 256 +- 11.
-constexpr int kMostBits = 170;
+constexpr int kMostBits = 205;
 constexpr std::size_t kImagesAtOnce = 8;
 
 // Least distance of each landmark's descriptor to those of its key points in one session.
