@@ -1,7 +1,5 @@
 #include "mapping/landmark_information.hpp"
 
-#include <Eigen/LU>
-
 #include "base/index.hpp"
 
 namespace roadbook {
@@ -30,12 +28,6 @@ std::vector<Eigen::Matrix3d> landmark_information(const Map& map) {
     if (const auto terms = terms_of(map, o))
       information[at(o.landmark)].noalias() += terms->J_point.transpose() * terms->J_point;
   return information;
-}
-
-Eigen::Matrix3d covariance_of_information(const Eigen::Matrix3d& information) {
-  Eigen::FullPivLU<Eigen::Matrix3d> lu(information);
-  lu.setThreshold(1e-12);
-  return lu.isInvertible() ? Eigen::Matrix3d(lu.inverse()) : unknown_covariance<Eigen::Matrix3d>();
 }
 
 }  // namespace roadbook

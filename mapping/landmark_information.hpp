@@ -22,7 +22,4 @@ struct ObservationTerms {
 /// observations are independent.
 [[nodiscard]] std::vector<Eigen::Matrix3d> landmark_information(const Map& map);
 
-/// The covariance that this information leaves; NaN where it does not fix the landmark.
-[[nodiscard]] Eigen::Matrix3d covariance_of_information(const Eigen::Matrix3d& information);
-
 }  // namespace roadbook

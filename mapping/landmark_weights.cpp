@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "base/index.hpp"
+#include "base/median.hpp"
 
 namespace roadbook {
 namespace {
@@ -55,14 +56,12 @@ double weight_of(const History& history) {
 }
 
 std::vector<History> histories_of(const Map& map) {
-  std::vector<int> images;
+  std::vector<double> images;
   for (const LandmarkSession& row : map.landmark_sessions)
     if (row.expected > 0) images.push_back(row.expected);
   std::vector<History> histories(map.landmarks.size());
   if (images.empty()) return histories;
-  const auto middle = images.begin() + static_cast<std::ptrdiff_t>(images.size() / 2);
-  std::nth_element(images.begin(), middle, images.end());
-  const double enough = std::max(1.0, kFullChance * static_cast<double>(*middle));
+  const double enough = std::max(1.0, kFullChance * median(images));
   for (const LandmarkSession& row : map.landmark_sessions) {
     if (row.expected == 0) continue;
     const double share = std::min(1.0, static_cast<double>(row.expected) / enough);

@@ -32,7 +32,8 @@ std::vector<std::optional<Drive>> drives_at_hand(const std::filesystem::path& fi
     if (!drives.back()) missing += (missing.empty() ? "" : ", ") + session.name;
   }
   if (!missing.empty())
-    messages.note("descriptors of session " + missing + " are not compared: no recording at hand");
+    messages.note("descriptors of session " + missing +
+                  " are not compared: the recording is missing");
   return drives;
 }
 

@@ -20,7 +20,7 @@ void print_edits(const Console& console, const EditResult& result, bool only_lis
     console.say("poses moved by " + fixed(result.moved_median_m, 3) + " m median, " +
                 fixed(result.moved_max_m, 3) + " m at most");
   for (const std::string& layer : result.dropped)
-    console.say("layer " + layer + " went: it no longer fits the poses");
+    console.say("layer " + layer + " was removed: it no longer fits the poses");
   console.result({{"edits", edits},
                   {"moved_m", {{"median", result.moved_median_m}, {"max", result.moved_max_m}}},
                   {"undone_later", result.undone_later},

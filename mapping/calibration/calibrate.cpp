@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/median.hpp"
 #include "base/require_option.hpp"
 #include "base/text.hpp"
 #include "mapping/calibration/calibration_interval.hpp"
@@ -20,7 +21,7 @@ using Held = std::vector<std::uint8_t>;
 std::vector<double> pixel_errors(const CalibrationData& data, const Eigen::VectorXd& values) {
   std::vector<double> errors;
   errors.reserve(data.views.size());
-  for (const CalibrationView& view : data.views) {
+  for (const BundleObservation& view : data.views) {
     const CalibrationPose& pose = data.poses[at(view.pose)];
     const PixelCost cost(data.rig.cameras[at(view.camera)], pose.twist, view);
     const PoseBlock block = block_of(pose.T_map_vehicle);
@@ -34,11 +35,8 @@ std::vector<double> pixel_errors(const CalibrationData& data, const Eigen::Vecto
   return errors;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double median_error(const CalibrationData& data, const Eigen::VectorXd& values) {
+  return data.views.empty() ? 0.0 : median(pixel_errors(data, values));
 }
 
 // Loss width of pixels in their stated standard deviations, from their median error.
@@ -115,6 +113,16 @@ Eigen::VectorXd priors_of(const std::vector<CalibrationColumn>& columns) {
   return priors;
 }
 
+// What is known before columns are estimated.
+EstimatedCalibration without_estimate(const CalibrationData& data, const Eigen::VectorXd& start) {
+  EstimatedCalibration calibration;
+  calibration.views = data.views.size();
+  calibration.motions = data.motions.size();
+  calibration.reprojection_before_px = median_error(data, start);
+  calibration.reprojection_after_px = calibration.reprojection_before_px;
+  return calibration;
+}
+
 }  // namespace
 
 void CalibrationOptions::check() const {
@@ -137,14 +145,11 @@ EstimatedCalibration calibrate(CalibrationData& data,
   options.check();
   const auto columns = calibration_columns(data.rig, data.has_wheels());
   const Held held = held_columns(columns, options.held);
-  EstimatedCalibration calibration;
-  calibration.views = data.views.size();
-  calibration.motions = data.motions.size();
+  EstimatedCalibration calibration = without_estimate(data, start);
   Eigen::VectorXd values = start;
-  double median = median_of(pixel_errors(data, values));
-  calibration.reprojection_before_px = median;
+  double median_px = calibration.reprojection_before_px;
   for (int round = 0; round < options.rounds; ++round) {
-    CalibrationProblem problem(data, values, held, loss_width(data, median, options),
+    CalibrationProblem problem(data, values, held, loss_width(data, median_px, options),
                                options.ground_sigma_m);
     const auto on_iteration = [&](int i) {
       report(progress, "calibration", at(round * options.max_iterations + i),
@@ -154,14 +159,14 @@ EstimatedCalibration calibrate(CalibrationData& data,
     values = problem.values();
     problem.write_to(data);
     set_twists(data.poses);
-    median = median_of(pixel_errors(data, values));
+    median_px = median_error(data, values);
     if (round + 1 < options.rounds) continue;
     const ColumnEstimate estimate = estimate_columns(problem.linear(), held, priors_of(columns));
     if (!estimate.usable) return calibration;
     // The solver stops where steps are small; the last step is exact.
     fill_columns(columns, values + estimate.step, held, estimate, calibration);
   }
-  calibration.reprojection_after_px = median;
+  calibration.reprojection_after_px = median_px;
   calibration.usable = true;
   return calibration;
 }
@@ -172,13 +177,9 @@ EstimatedCalibration first_step(const CalibrationData& data,
   options.check();
   const auto columns = calibration_columns(data.rig, data.has_wheels());
   const Held held = held_columns(columns, options.held);
-  EstimatedCalibration calibration;
-  calibration.views = data.views.size();
-  calibration.motions = data.motions.size();
-  const double median = median_of(pixel_errors(data, start));
-  calibration.reprojection_before_px = calibration.reprojection_after_px = median;
-  CalibrationProblem problem(data, start, held, loss_width(data, median, options),
-                             options.ground_sigma_m);
+  EstimatedCalibration calibration = without_estimate(data, start);
+  const double width = loss_width(data, calibration.reprojection_before_px, options);
+  CalibrationProblem problem(data, start, held, width, options.ground_sigma_m);
   const ColumnEstimate estimate = estimate_columns(problem.linear(), held, priors_of(columns));
   if (!estimate.usable) return calibration;
   fill_columns(columns, start + estimate.step, held, estimate, calibration);

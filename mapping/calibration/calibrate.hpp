@@ -53,9 +53,8 @@ struct EstimatedCalibration {
 };
 
 /// Estimates the columns of `calibration_columns`, from `start` (zeros: as stated), and improves
-/// poses and points of `data`. Columns that are not needed and that the drive does not tell are
-/// held at zero, and the others estimated again. Deterministic. Throws InvalidOption for an unknown
-/// name in `held`; Interrupted.
+/// poses and points of `data`. Priors limit the columns that the drive does not show
+/// (`prior_sigma`). Deterministic. Throws InvalidOption for an unknown name in `held`; Interrupted.
 [[nodiscard]] EstimatedCalibration calibrate(CalibrationData& data,
                                              const Eigen::VectorXd& start,
                                              const CalibrationOptions& options = {},
@@ -67,8 +66,8 @@ struct EstimatedCalibration {
                                               const Eigen::VectorXd& start,
                                               const CalibrationOptions& options = {});
 
-/// The calibration as effects for a model file. Columns of size 0 are left out, and those that are
-/// neither observable nor needed.
+/// The calibration as effects for a model file. Columns of size 0 are left out, and columns that
+/// are not observable unless a calibration needs them (`is_needed`).
 [[nodiscard]] EffectSizes to_effects(const EstimatedCalibration& calibration);
 
 /// Values of the columns for effects that are known already; others than the columns are ignored.

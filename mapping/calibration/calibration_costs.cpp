@@ -33,7 +33,7 @@ bool says_nothing(double* residuals, double** jacobians) {
 
 PixelCost::PixelCost(const MountedCamera& mounted,
                      const Vector6d& twist,
-                     const CalibrationView& view)
+                     const BundleObservation& view)
     : mounted_(mounted), twist_(twist), view_(view), centre_(principal_point(mounted.camera)) {}
 
 bool PixelCost::Evaluate(const double* const* parameters,

@@ -24,7 +24,7 @@ using WheelBlock = std::array<double, kColumnsOfWheels>;
 class PixelCost : public ceres::SizedCostFunction<2, 7, 3, kColumnsOfCamera> {
  public:
   /// Keeps references; `twist` may change between two solves.
-  PixelCost(const MountedCamera& mounted, const Vector6d& twist, const CalibrationView& view);
+  PixelCost(const MountedCamera& mounted, const Vector6d& twist, const BundleObservation& view);
   bool Evaluate(const double* const* parameters,
                 double* residuals,
                 double** jacobians) const override;
@@ -32,7 +32,7 @@ class PixelCost : public ceres::SizedCostFunction<2, 7, 3, kColumnsOfCamera> {
  private:
   const MountedCamera& mounted_;
   const Vector6d& twist_;
-  const CalibrationView& view_;
+  const BundleObservation& view_;
   Eigen::Vector2d centre_;
 };
 

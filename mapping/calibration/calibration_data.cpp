@@ -43,10 +43,9 @@ std::vector<CalibrationPose> poses_of(const Map& map,
 }
 
 // Views of each landmark, at most `most`, spread evenly.
-std::vector<std::vector<CalibrationView>> views_of(const Map& map,
-                                                   const std::vector<CalibrationSession>& sessions,
-                                                   int most) {
-  std::vector<std::vector<CalibrationView>> views(map.landmarks.size());
+std::vector<std::vector<BundleObservation>> views_of(
+    const Map& map, const std::vector<CalibrationSession>& sessions, int most) {
+  std::vector<std::vector<BundleObservation>> views(map.landmarks.size());
   for (const Observation& seen : map.observations)
     if (sessions[at(map.keyframes[at(seen.keyframe)].session)].used)
       views[at(seen.landmark)].push_back({seen.keyframe, 0, seen.camera, seen.pixel.cast<double>(),
@@ -61,7 +60,7 @@ std::vector<std::vector<CalibrationView>> views_of(const Map& map,
 }
 
 // Landmarks with many views first; accepts those that at least half of their images still need.
-std::vector<std::size_t> chosen_landmarks(const std::vector<std::vector<CalibrationView>>& views,
+std::vector<std::size_t> chosen_landmarks(const std::vector<std::vector<BundleObservation>>& views,
                                           std::size_t poses,
                                           std::size_t cameras,
                                           int per_image) {
@@ -71,7 +70,7 @@ std::vector<std::size_t> chosen_landmarks(const std::vector<std::vector<Calibrat
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return views[a].size() > views[b].size(); });
   std::vector<int> taken(poses * cameras, 0);
-  const auto image_of = [&](const CalibrationView& v) -> int& {
+  const auto image_of = [&](const BundleObservation& v) -> int& {
     return taken[at(v.pose) * cameras + at(v.camera)];
   };
   std::vector<std::size_t> chosen;
@@ -79,7 +78,7 @@ std::vector<std::size_t> chosen_landmarks(const std::vector<std::vector<Calibrat
     const auto wanting = std::count_if(views[l].begin(), views[l].end(),
                                        [&](const auto& v) { return image_of(v) < per_image; });
     if (2 * static_cast<std::size_t>(wanting) < views[l].size()) continue;
-    for (const CalibrationView& v : views[l]) ++image_of(v);
+    for (const BundleObservation& v : views[l]) ++image_of(v);
     chosen.push_back(l);
   }
   std::sort(chosen.begin(), chosen.end());
@@ -170,7 +169,7 @@ CalibrationData calibration_data(const Map& map,
   for (const std::size_t l : chosen_landmarks(views, data.poses.size(), cameras, per_image)) {
     const int point = static_cast<int>(data.points.size());
     data.points.push_back(map.p_map(map.landmarks[l]));
-    for (CalibrationView& view : views[l]) {
+    for (BundleObservation& view : views[l]) {
       view.point = point;
       data.views.push_back(view);
     }

@@ -7,6 +7,7 @@
 
 #include "base/se3.hpp"
 #include "mapping/map.hpp"
+#include "mapping/optimisation/adjustment_problem.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
 
@@ -23,15 +24,6 @@ struct CalibrationPose {
   bool fixed = false;   ///< the first pose of a piece, which holds the gauge
   int piece = 0;        ///< poses of different pieces have no common place
   int stretch = 0;      ///< of some metres; errors within a stretch are not independent
-};
-
-/// A pixel where a camera saw a point (full-size image).
-struct CalibrationView {
-  int pose = 0;
-  int point = 0;
-  int camera = 0;
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  double sigma_px = 1.0;
 };
 
 /// A point on the ground, whose height is 0 in the frame of the nearest pose.
@@ -51,8 +43,8 @@ struct CalibrationMotion {
 struct CalibrationData {
   Rig rig;  ///< as stated, full-size images; the same in all drives
   std::vector<CalibrationPose> poses;
-  std::vector<Eigen::Vector3d> points;  ///< [m, map]
-  std::vector<CalibrationView> views;   ///< point by point
+  std::vector<Eigen::Vector3d> points;   ///< [m, map]
+  std::vector<BundleObservation> views;  ///< full-size images, point by point
   std::vector<CalibrationGround> grounds;
   std::vector<CalibrationMotion> motions;
 

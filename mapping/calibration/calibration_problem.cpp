@@ -110,7 +110,7 @@ void CalibrationProblem::add_residuals(const CalibrationData& data, double groun
   constexpr int kWheels = -2;
   int point = -1;
   int cluster = 0;
-  for (const CalibrationView& view : data.views) {
+  for (const BundleObservation& view : data.views) {
     if (view.point != point) cluster = cluster_of(data.poses[at(view.pose)].stretch, view.camera);
     point = view.point;
     add_residual(

@@ -1,6 +1,5 @@
 #include "mapping/checks/covariance_check.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <map>
 #include <set>
@@ -9,8 +8,10 @@
 #include <vector>
 
 #include "base/index.hpp"
+#include "base/median.hpp"
 #include "base/se3.hpp"
 #include "mapping/checks/finding.hpp"
+#include "mapping/inverse_information.hpp"
 #include "mapping/landmark_information.hpp"
 #include "vo/planar_motion.hpp"
 
@@ -22,12 +23,6 @@ namespace {
 constexpr double kLeastShare = 0.5;
 // Of landmarks, whose covariance is given the poses, the median of the map gives the usual factor.
 constexpr double kLeastOfMedian = 0.05;
-
-Matrix6d covariance_of_pose(const Matrix6d& information) {
-  Eigen::FullPivLU<Matrix6d> lu(information);
-  lu.setThreshold(1e-12);
-  return lu.isInvertible() ? Matrix6d(lu.inverse()) : unknown_covariance<Matrix6d>();
-}
 
 // Covariance of each pose if all other poses were known: a block of the diagonal of the reduced
 // system (Schur complement), with the wheels' motions from and to the neighbours. The marginal
@@ -56,7 +51,7 @@ std::vector<Matrix6d> least_of_poses(const Map& map,
     information[k - 1] += A.transpose() * wheels * A;
   }
   std::vector<Matrix6d> covariance;
-  for (const Matrix6d& one : information) covariance.push_back(covariance_of_pose(one));
+  for (const Matrix6d& one : information) covariance.push_back(covariance_of_information(one));
   return covariance;
 }
 
@@ -104,13 +99,10 @@ void find_landmark_covariances(const Map& map,
     judged.push_back(static_cast<int>(l));
   }
   if (ratios.empty()) return;
-  std::vector<double> sorted = ratios;
-  std::sort(sorted.begin(), sorted.end());
-  const double median = sorted[sorted.size() / 2];
+  const double usual = std::max(1.0, median(ratios));
   std::vector<int> too_small;
   for (std::size_t i = 0; i < ratios.size(); ++i)
-    if (ratios[i] <= 0.0 || ratios[i] < kLeastOfMedian * std::max(1.0, median))
-      too_small.push_back(judged[i]);
+    if (ratios[i] <= 0.0 || ratios[i] < kLeastOfMedian * usual) too_small.push_back(judged[i]);
   if (!too_small.empty())
     problems.push_back(finding("covariances of landmarks",
                                std::to_string(too_small.size()) + " (" + first_of(too_small) +

@@ -10,16 +10,10 @@
 #include "base/index.hpp"
 #include "mapping/checks/finding.hpp"
 #include "mapping/joined_parts.hpp"
-#include "mapping/optimisation/motion_residual.hpp"
+#include "mapping/loops/loop_misfit.hpp"
 
 namespace roadbook {
 namespace {
-
-// Allowed error of a loop in addition to its own uncertainty, because the adjustment knows more
-// than the two images of the loop.
-constexpr double kLoopSlackM = 0.1;
-constexpr double kLoopSlackRad = 0.02;
-constexpr double kLoopSigmas = 6.0;
 
 constexpr double kLeastStepM = 0.1;  // of a motion whose length says something
 constexpr std::size_t kLeastSteps = 10;
@@ -59,21 +53,17 @@ void find_wrong_pieces(const Map& map, std::vector<Problem>& problems) {
 void find_wrong_loops(const Map& map, std::vector<Problem>& problems) {
   std::vector<int> wrong;
   double worst_m = 0.0;
-  Matrix6d slack = Matrix6d::Zero();
-  slack.diagonal() << Eigen::Vector3d::Constant(kLoopSlackM * kLoopSlackM),
-      Eigen::Vector3d::Constant(kLoopSlackRad * kLoopSlackRad);
   for (std::size_t i = 0; i < map.loops.size(); ++i) {
     const LoopEdge& loop = map.loops[i];
     if (!loop.accepted || map.keyframes[at(loop.from)].piece != map.keyframes[at(loop.to)].piece)
       continue;
-    const Vector6d e =
-        motion_error(map.T_map_vehicle(loop.from), map.T_map_vehicle(loop.to), loop.T_from_to, 1.0);
-    Matrix6d covariance = slack;
-    const Eigen::LLT<Matrix6d> llt(loop.information);
-    if (llt.info() == Eigen::Success) covariance += llt.solve(Matrix6d::Identity());
-    if (e.dot(covariance.llt().solve(e)) <= kLoopSigmas * kLoopSigmas) continue;
+    const Eigen::Isometry3d T_map_from = map.T_map_vehicle(loop.from);
+    const Eigen::Isometry3d T_map_to = map.T_map_vehicle(loop.to);
+    if (loop_misfit(T_map_from, T_map_to, loop.T_from_to, loop.information) <= kMostLoopMisfit)
+      continue;
     wrong.push_back(static_cast<int>(i));
-    worst_m = std::max(worst_m, e.head<3>().norm());
+    worst_m = std::max(worst_m,
+                       ((T_map_from * loop.T_from_to).inverse() * T_map_to).translation().norm());
   }
   if (!wrong.empty())
     problems.push_back(

@@ -10,6 +10,7 @@
 
 #include "base/format.hpp"
 #include "base/index.hpp"
+#include "base/median.hpp"
 #include "mapping/checks/finding.hpp"
 
 namespace roadbook {
@@ -20,12 +21,6 @@ constexpr double kUnseen = std::numeric_limits<double>::infinity();
 constexpr double kFactor = 8.0;
 constexpr double kLeastPx = 4.0;  // [px, full-size image]
 constexpr int kLeastViews = 8;    // of a pose, to judge it
-
-double median_of_errors(std::vector<double> errors) {
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return *middle;
-}
 
 // Length of each observation's error [px]; infinite where the camera cannot see the landmark.
 std::vector<double> errors_of_observations(const Map& map) {
@@ -59,13 +54,13 @@ std::set<CameraOfSession> find_wrong_cameras(const Map& map,
   }
   std::set<CameraOfSession> wrong;
   for (const auto& [camera, list] : of_camera) {
-    const double median = median_of_errors(list);
-    if (static_cast<int>(list.size()) < kLeastViews || median <= most_px) continue;
+    const double middle = median(list);
+    if (static_cast<int>(list.size()) < kLeastViews || middle <= most_px) continue;
     wrong.insert(camera);
     const Session& session = map.sessions[at(camera.first)];
     problems.push_back(finding(
         "camera " + session.rig.cameras[at(camera.second)].name + " of session " + session.name,
-        "a median error of " + pixels_text(median) + " over " + std::to_string(list.size()) +
+        "a median error of " + pixels_text(middle) + " over " + std::to_string(list.size()) +
             " observations",
         "at most " + fixed(most_px, 1) +
             " px, as the other cameras (is it mounted or "
@@ -89,7 +84,7 @@ std::set<int> find_wrong_poses(const Map& map,
   std::map<int, std::vector<int>> of_session;
   for (std::size_t k = 0; k < of_pose.size(); ++k) {
     if (static_cast<int>(of_pose[k].size()) < kLeastViews) continue;
-    if (median_of_errors(of_pose[k]) <= most_px) continue;
+    if (median(of_pose[k]) <= most_px) continue;
     wrong.insert(static_cast<int>(k));
     of_session[map.keyframes[k].session].push_back(static_cast<int>(k));
   }
@@ -136,7 +131,7 @@ std::vector<Problem> view_problems(const Map& map) {
   find_double_views(map, problems);
   if (map.observations.empty()) return problems;
   const std::vector<double> errors = errors_of_observations(map);
-  const double most_px = std::max(kLeastPx, kFactor * median_of_errors(errors));
+  const double most_px = std::max(kLeastPx, kFactor * median(errors));
   const auto cameras = find_wrong_cameras(map, errors, most_px, problems);
   const auto poses = find_wrong_poses(map, errors, cameras, most_px, problems);
   find_unseen_landmarks(map, errors, cameras, poses, problems);

@@ -9,6 +9,7 @@
 #include "base/format.hpp"
 #include "base/index.hpp"
 #include "mapping/edits/edit_motion.hpp"
+#include "mapping/loops/loop_misfit.hpp"
 #include "mapping/optimisation/graph_relaxation.hpp"
 #include "vo/planar_motion.hpp"
 
@@ -21,9 +22,6 @@ constexpr double kStepSigmaShare = 0.01;  // of its length
 constexpr double kStepSigmaRad = 0.002;
 constexpr double kLeastJoinM = 0.2;  // odometry that an edit bends by more is contradicted
 constexpr double kLeastJoinRad = 0.05;
-constexpr double kLoopSlackM = 0.1;  // as in join_check.cpp
-constexpr double kLoopSlackRad = 0.02;
-constexpr double kSigmas = 6.0;
 constexpr double kAroundM = 8.0;  // of a place of kNotALoop
 constexpr std::size_t kNamed = 3;
 
@@ -55,14 +53,9 @@ std::vector<RelativePose> steps_of(const Map& map, bool by_wheels) {
   return steps;
 }
 
-double sigmas_off(const std::vector<Eigen::Isometry3d>& poses, const RelativePose& edge) {
-  const Vector6d e = motion_error(poses[at(edge.from)], poses[at(edge.to)], edge.T_from_to, 1.0);
-  Matrix6d covariance = Matrix6d::Zero();
-  covariance.diagonal() << Eigen::Vector3d::Constant(kLoopSlackM * kLoopSlackM),
-      Eigen::Vector3d::Constant(kLoopSlackRad * kLoopSlackRad);
-  const Eigen::LLT<Matrix6d> llt(edge.information);
-  if (llt.info() == Eigen::Success) covariance += llt.solve(Matrix6d::Identity());
-  return std::sqrt(e.dot(covariance.llt().solve(e)));
+bool contradicts(const std::vector<Eigen::Isometry3d>& poses, const RelativePose& edge) {
+  return loop_misfit(poses[at(edge.from)], poses[at(edge.to)], edge.T_from_to, edge.information) >
+         kMostLoopMisfit;
 }
 
 std::string name_of(const Map& map, const RelativePose& edge) {
@@ -81,7 +74,7 @@ std::vector<std::string> contradicted(const Map& map,
                                       const std::vector<RelativePose>& loops) {
   std::vector<std::string> names;
   for (const RelativePose& loop : loops)
-    if (sigmas_off(after, loop) > kSigmas && sigmas_off(before, loop) <= kSigmas)
+    if (contradicts(after, loop) && !contradicts(before, loop))
       names.push_back("loop " + name_of(map, loop));
   for (const RelativePose& step : steps) {
     const Vector6d e = motion_error(after[at(step.from)], after[at(step.to)], step.T_from_to, 1.0);
@@ -174,8 +167,8 @@ std::vector<Eigen::Isometry3d> relaxed_with_edits(const Map& map,
   graph.T_map_vehicle = before;
   place_pieces(map, terms.motions, graph.T_map_vehicle);
   graph.odometry = steps;
-  // Loops that the map has accepted are known; so is what a person says. What disagrees shows
-  // afterwards.
+  // Neither accepted loops nor edits may be switched off. Contradictions between them are found in
+  // the result.
   graph.loops = loops;
   graph.loops.insert(graph.loops.end(), terms.motions.begin(), terms.motions.end());
   if (!terms.anchors.empty()) {
@@ -195,7 +188,7 @@ std::vector<Eigen::Isometry3d> relaxed_with_edits(const Map& map,
 
   std::vector<std::string> names = contradicted(map, before, after, steps, loops);
   for (const RelativePose& motion : terms.motions)
-    if (sigmas_off(after, motion) > kSigmas) names.push_back("edit " + name_of(map, motion));
+    if (contradicts(after, motion)) names.push_back("edit " + name_of(map, motion));
   if (names.empty()) return after;
   std::string text;
   for (std::size_t i = 0; i < names.size() && i < kNamed; ++i)

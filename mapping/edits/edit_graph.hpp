@@ -18,7 +18,7 @@ struct EditTerms {
   std::vector<std::pair<int, int>> apart;  ///< keyframes of kNotALoop, ascending
 };
 
-/// Throws Refused for places that the map does not have.
+/// Throws BadInput for places that the map does not have, and the exceptions of `motion_of_edit`.
 [[nodiscard]] EditTerms terms_of_edits(const Map& map, const std::vector<MapEdit>& edits);
 
 /// Whether two keyframes lie around the two places that an edit says are different.

@@ -37,7 +37,7 @@ int camera_named(const Map& map, int keyframe, const std::string& name) {
     if (session.rig.cameras[c].name == name) return static_cast<int>(c);
     names += (names.empty() ? "" : ", ") + session.rig.cameras[c].name;
   }
-  throw Refused("error: edit: camera: got " + name + ", want one of " + names);
+  throw BadInput({Severity::kError, "", 0, "camera", name, "one of " + names});
 }
 
 // The point that a pixel shows, in the vehicle frame of its keyframe.
@@ -148,8 +148,8 @@ int keyframe_of_place(const Map& map, const EditPlace& place) {
   const auto found = std::find_if(map.sessions.begin(), map.sessions.end(),
                                   [&](const Session& s) { return s.name == place.session; });
   if (found == map.sessions.end())
-    throw Refused("error: edit: session: got " + place.session + ", want one of " +
-                  session_names(map));
+    throw BadInput(
+        {Severity::kError, "", 0, "session", place.session, "one of " + session_names(map)});
   const int session = static_cast<int>(found - map.sessions.begin());
   int best = -1;
   std::int64_t least = kNearNs + 1;
@@ -161,9 +161,9 @@ int keyframe_of_place(const Map& map, const EditPlace& place) {
     best = static_cast<int>(k);
   }
   if (best < 0)
-    throw Refused("error: edit: time of " + place.session + ": got " + std::to_string(place.t_ns) +
-                  ", want one within 1 s of a keyframe, from " + std::to_string(found->t_begin_ns) +
-                  " to " + std::to_string(found->t_end_ns));
+    throw BadInput({Severity::kError, "", 0, "time in " + place.session, std::to_string(place.t_ns),
+                    "within 1 s of a keyframe, from " + std::to_string(found->t_begin_ns) + " to " +
+                        std::to_string(found->t_end_ns) + " ns"});
   return best;
 }
 
@@ -171,7 +171,7 @@ RelativePose motion_of_edit(const Map& map, const MapEdit& edit) {
   const int a = keyframe_of_place(map, edit.a);
   const int b = keyframe_of_place(map, edit.b);
   if (a == b)
-    throw Refused("error: edit: " + text_of(edit) + ": got one keyframe, want two places");
+    throw BadInput({Severity::kError, "", 0, text_of(edit), "one keyframe", "two places"});
   RelativePose edge = edit.kind == EditKind::kSamePoints
                           ? motion_of_points(map, edit, a, b)
                           : planar_motion(a, b, edit.motion, edit.sigma_m, edit.sigma_rad);

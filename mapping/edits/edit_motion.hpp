@@ -7,7 +7,7 @@
 namespace roadbook {
 
 /// The keyframe that a place of an edit names: the nearest in time of its session, at most 1 s
-/// away. Throws Refused with the sessions, or the times of the session, that there are.
+/// away. Throws BadInput with the sessions or times that the map has.
 [[nodiscard]] int keyframe_of_place(const Map& map, const EditPlace& place);
 
 /// The motion between the keyframes of a kLoop or kSamePoints edit, from the earlier keyframe to

@@ -14,8 +14,8 @@ namespace roadbook {
 /// Map frames do not move. Adjusted covariances replace the old ones.
 ///
 /// An edit must agree with the map: Refused names the accepted loops of the map, the steps of
-/// odometry or the other edits that contradict it. Refused also for places that the map does not
-/// have (`motion_of_edit`); Interrupted. Deterministic on any number of threads.
+/// odometry or the other edits that contradict it. BadInput for places that the map does not have;
+/// Interrupted. Deterministic on any number of threads.
 [[nodiscard]] Map edited_map(const Map& map,
                              const std::vector<MapEdit>& edits,
                              const MapOptions& options,

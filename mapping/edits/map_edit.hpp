@@ -7,9 +7,8 @@
 
 namespace roadbook {
 
-// What a person knows about a map and the program did not find (docs/guide/map_life.md, "Correct a
-// map by hand"). Edits name poses by session and time, so that they stay valid when the map is
-// built again.
+// Corrections that a person makes to a map (docs/guide/map_life.md, "Correct a map by hand"). Edits
+// name poses by session and time, so that they stay valid when the map is built again.
 
 enum class EditKind { kLoop, kSamePoints, kNotALoop, kAnchor };
 

@@ -1,12 +1,11 @@
 #include "mapping/pipeline/landmark_covariance.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <span>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "mapping/known_covariance.hpp"
+#include "mapping/inverse_information.hpp"
 
 namespace roadbook {
 namespace {
@@ -28,9 +27,7 @@ Eigen::Matrix3d covariance_given_poses(const MappingInput& input,
     const Eigen::Matrix<double, 2, 3> whitened = J * T_camera_map.linear() / sigma_px;
     information.noalias() += whitened.transpose() * whitened;
   }
-  Eigen::FullPivLU<Eigen::Matrix3d> lu(information);
-  lu.setThreshold(1e-12);
-  return lu.isInvertible() ? lu.inverse() : unknown_covariance<Eigen::Matrix3d>();
+  return covariance_of_information(information);
 }
 
 // Squared Mahalanobis distance of the positions from the early and from the late views; negative

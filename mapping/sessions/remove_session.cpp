@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "mapping/inverse_information.hpp"
 #include "mapping/joined_parts.hpp"
 #include "mapping/landmark_information.hpp"
 #include "mapping/pieces.hpp"

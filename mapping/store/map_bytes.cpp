@@ -1,6 +1,7 @@
 #include "mapping/store/map_bytes.hpp"
 
 #include "base/error.hpp"
+#include "mapping/store/foreign_parts.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
 #include "mapping/store/map_file_tables.hpp"
 
@@ -33,6 +34,7 @@ Map map_from_bytes(const Bytes& bytes, const std::filesystem::path& file) {
     refuse("no database");
   try {
     if (database.value("PRAGMA quick_check(1)") != "ok") refuse("damaged pages");
+    refuse_foreign_parts(database);
     return read_map_tables(database);
   } catch (const BadInput& bad) {
     refuse(bad.problems().front().got);

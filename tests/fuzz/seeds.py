@@ -137,6 +137,9 @@ def inputs(name, place):
         "import": chosen([KITTI, KITTI360, KAIST, EUROC]),
         "labels": chosen([COCO, GEOJSON, YOLO]),
         "plain_log": [LOG.encode(), (LOG.split("====")[0] + "====\nMATLAB 5.0 MAT-file" + 200 * "\0").encode()],
+        "edits": [b"edits:\n  - loop: {a: m@1, b: x@2, motion: [1, 2, 3]}\n"
+                  b"  - same_points: {a: m@1, camera: cam0, pixels: [[1, 2], [3, 4]], b: x@2, "
+                  b"pixels_b: [[1, 2], [3, 4]]}\n"],
         "scenario": [b"seed: 1\nsizes: {small: {}}\n"],
         "property_table": chosen(["wheels0.left_radius: 0.01\ncam.focal: 0.02\n", TABLES[3]]),
         "http": chosen([REQUEST, BODY]),

@@ -6,6 +6,7 @@
 
 #include "base/index.hpp"
 #include "base/messages.hpp"
+#include "base/random.hpp"
 #include "mapping/edits/edited_map.hpp"
 #include "mapping/pieces.hpp"
 #include "mapping/pipeline/build_summary.hpp"
@@ -246,6 +247,23 @@ TEST_F(Visits, StayWhenAnEditBeforeThemIsTakenBack) {
   static_cast<void>(map_drives(request, messages));
   ASSERT_EQ(stored_edits(file).size(), 1U);
   EXPECT_FALSE(stored_map_before_edits(file));
+  // A further edit does not take the map with the first one for a map without edits.
+  MapEdit loop;
+  loop.a = place_of(map, 30);
+  loop.b = place_of(map, 60);
+  const Eigen::Isometry3d motion = map.T_map_vehicle(30).inverse() * map.T_map_vehicle(60);
+  loop.motion = {motion.translation().x(), motion.translation().y(), heading_of(motion)};
+  EXPECT_EQ(edited_by(file, edit_yaml(loop)).edits.size(), 2U);
+  EXPECT_FALSE(stored_map_before_edits(file));
+  loop.b.session = "sunday";
+  try {
+    static_cast<void>(edited_by(file, edit_yaml(loop)));
+    ADD_FAILURE() << "the map has no such session";
+  } catch (const BadInput& bad) {
+    EXPECT_NE(to_line(bad.problems().front()).find(".edits.yaml: session: got sunday"),
+              std::string::npos);
+  }
+  EXPECT_TRUE(taken_back(file, 2).undone_later);
   EXPECT_TRUE(taken_back(file, 1).undone_later);
   EXPECT_EQ(load_map(file).sessions.size(), 2U);
   EXPECT_TRUE(stored_edits(file).empty());
@@ -272,6 +290,34 @@ TEST(EditFile, IsReadBackToTheBit) {
     EXPECT_EQ(again[0].motion, edit.motion);
     EXPECT_EQ(again[0].pixels_b, edit.pixels_b);
   }
+}
+
+// Bytes changed at random: each text is read, or refused as bad input. What is read can be stored.
+TEST(EditFile, SurvivesChangedBytes) {
+  const std::string whole = R"(edits:
+  - loop: {a: monday@1400000000123456789, b: "tues day@7", motion: [0.1, -0.2, 0.3], sigma: [1, 2]}
+  - same_points: {a: m@5, camera: cam0, pixels: [[1, 2], [3, 4.5]], b: x@9, pixels_b: [[5, 6], [7, 8]]}
+  - anchor: {at: monday@5, place: [1, 2, 3]}
+)";
+  Random random(7, "changed edits");
+  int read = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = whole;
+    for (std::uint64_t n = 1 + random.below(3); n > 0; --n)
+      text[random.below(text.size())] = static_cast<char>(32 + random.below(95));
+    if (random.below(10) == 0) text.resize(random.below(text.size()));
+    try {
+      for (const MapEdit& edit : parse_edits(text, "edits.yaml")) {
+        const auto again = parse_edits(edit_yaml(edit), "again");
+        ASSERT_EQ(again.size(), 1U) << text;
+        EXPECT_EQ(edit_yaml(again[0]), edit_yaml(edit));
+        ++read;
+      }
+    } catch (const BadInput&) {
+      continue;
+    }
+  }
+  EXPECT_GT(read, 100);
 }
 
 TEST(EditFile, NamesWhatItCannotRead) {

@@ -142,14 +142,16 @@ std::string pixel_list(const std::vector<Eigen::Vector2d>& pixels) {
   return text + "]";
 }
 
-std::string place(const EditPlace& p) {
-  std::string quoted = "\"";
-  for (const char c : p.session) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
+std::string quoted(const std::string& text) {
+  std::string with = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') with += '\\';
+    with += c;
   }
-  return quoted + "@" + std::to_string(p.t_ns) + "\"";
+  return with + "\"";
 }
+
+std::string place(const EditPlace& p) { return quoted(p.session + "@" + std::to_string(p.t_ns)); }
 
 }  // namespace
 
@@ -169,8 +171,8 @@ std::string edit_yaml(const MapEdit& edit) {
     case EditKind::kLoop:
       return "loop: {" + both + ", motion: " + motion + sigma + "}";
     case EditKind::kSamePoints:
-      return "same_points: {" + both + ", camera: " + edit.camera_a +
-             ", camera_b: " + edit.camera_b + ", pixels: " + pixel_list(edit.pixels_a) +
+      return "same_points: {" + both + ", camera: " + quoted(edit.camera_a) +
+             ", camera_b: " + quoted(edit.camera_b) + ", pixels: " + pixel_list(edit.pixels_a) +
              ", pixels_b: " + pixel_list(edit.pixels_b) + sigma + "}";
     case EditKind::kNotALoop:
       return "not_a_loop: {" + both + "}";

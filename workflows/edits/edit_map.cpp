@@ -43,13 +43,13 @@ void store_edited(const std::filesystem::path& file,
                   const Map& now,
                   const Map& edited,
                   const std::vector<MapEdit>& edits,
-                  const Map& before,
+                  const Map* before,
                   EditResult& result) {
   const MapLayers layers(file);
   const std::vector<Label> labels = read_labels(file);
   MapUpdate update(file);
   update.write_map(edited);
-  write_edits(update, edits, &before);
+  write_edits(update, edits, before);
   if (piece_count(edited) != piece_count(now))
     update.set_meta(kPiecesKey, std::to_string(piece_count(edited)));
   if (has_moved(now, edited)) {
@@ -78,6 +78,21 @@ MapOptions options_with(int num_threads) {
   return options;
 }
 
+// The map with its edits. Faults of places name the file of the new edits.
+Map edited_by(const EditRequest& request,
+              const Map& base,
+              const std::vector<MapEdit>& edits,
+              const Progress& progress) {
+  try {
+    return edited_map(base, edits, options_with(request.num_threads), progress);
+  } catch (const BadInput& bad) {
+    std::vector<Problem> problems = bad.problems();
+    for (Problem& problem : problems)
+      if (problem.file.empty()) problem.file = request.edits.string();
+    throw BadInput(std::move(problems));
+  }
+}
+
 }  // namespace
 
 EditResult edit_map(const EditRequest& request, Messages& messages) {
@@ -95,7 +110,7 @@ EditResult edit_map(const EditRequest& request, Messages& messages) {
     if (request.undo < 1 || request.undo > static_cast<int>(result.edits.size()))
       throw InvalidOption("--undo", std::to_string(request.undo),
                           result.edits.empty()
-                              ? "no edit: the map has none"
+                              ? "nothing: the map has no edits"
                               : "1 to " + std::to_string(result.edits.size()) + " (--list)");
     edits.erase(edits.begin() + request.undo - 1);
   }
@@ -108,18 +123,13 @@ EditResult edit_map(const EditRequest& request, Messages& messages) {
     write_edits(update, edits, nullptr);
     update.commit();
     result.undone_later = true;
-  } else if (before || is_new) {
-    const Map& base = before ? *before : now;
-    const Map edited =
-        edited_map(base, edits, options_with(request.num_threads), messages.progress());
-    measure_moves(now, edited, result);
-    store_edited(request.map, now, edited, edits, base, result);
   } else {
-    // The earlier edits are in the poses already; they take part again, in agreement.
-    const Map edited =
-        edited_map(now, edits, options_with(request.num_threads), messages.progress());
+    // Without the map before the edits, those made earlier are in the poses already.
+    const Map& base = before ? *before : now;
+    const bool is_whole = before || is_new;
+    const Map edited = edited_by(request, base, edits, messages.progress());
     measure_moves(now, edited, result);
-    store_edited(request.map, now, edited, edits, now, result);
+    store_edited(request.map, now, edited, edits, is_whole ? &base : nullptr, result);
   }
   result.edits = std::move(edits);
   result.digest = load_meta(request.map).digest;
@@ -144,7 +154,7 @@ bool repeat_edits(const std::filesystem::path& map, int num_threads, Messages& m
   EditResult result;
   store_edited(map, before,
                edited_map(before, edits, options_with(num_threads), messages.progress()), edits,
-               before, result);
+               &before, result);
   return true;
 }
 

@@ -12,7 +12,7 @@ namespace roadbook {
 struct EditRequest {
   std::filesystem::path map;
   std::filesystem::path edits;  ///< file of edits to add; empty: none
-  int undo = 0;                 ///< number of an edit to take back, from 1; 0: none
+  int undo = 0;                 ///< number of the edit to undo, from 1; 0: no undo
   int num_threads = 0;
 };
 
@@ -36,8 +36,9 @@ struct EditResult {
 /// is unchanged.
 EditResult edit_map(const EditRequest& request, Messages& messages);
 
-/// Makes the edits of a map again after a build, which has carried their table over. Returns
-/// whether there were any. Throws as `edit_map`; the map then is without its edits.
+/// Makes the edits of a map again after a build, which has kept their table. Returns false if the
+/// map has no edits. Throws the exceptions of `edit_map`; the map then lacks the effect of its
+/// edits.
 bool repeat_edits(const std::filesystem::path& map, int num_threads, Messages& messages);
 
 }  // namespace roadbook

@@ -111,7 +111,7 @@ TEST(Calibrate, OneStepSaysNearlyTheSame) {
   EXPECT_NEAR(step.find("cam1.latency")->value, found.find("cam1.latency")->value, 0.003);
 }
 
-// At a constant speed straight ahead, neither delays nor turns of the wheels show.
+// A drive straight ahead at a constant speed shows no delays, and no errors in turns.
 TEST(Calibrate, AStraightDriveDoesNotTellDelays) {
   test::CalibrationDriveOptions straight;
   straight.seconds = 20.0;
@@ -166,7 +166,7 @@ TEST(Calibrate, AgreesWithTheMeanOfSingleCameraPoses) {
   int poses = 0;
   for (std::size_t k = 0; k < start.poses.size(); ++k) {
     std::vector<RigObservation> seen;
-    for (const CalibrationView& view : start.views)
+    for (const BundleObservation& view : start.views)
       if (view.camera == 1 && view.pose == static_cast<int>(k))
         seen.push_back({0, view.pixel, drive.points[static_cast<std::size_t>(view.point)]});
     if (seen.size() < 10) continue;
@@ -233,7 +233,7 @@ void expect_derivatives(const ceres::CostFunction& cost,
 
 TEST(CalibrationCosts, DerivativesAreThoseOfDifferences) {
   const test::CalibrationDrive drive = test::calibration_drive({}, 2);
-  const CalibrationView& view = drive.data.views[500];
+  const BundleObservation& view = drive.data.views[500];
   const CalibrationPose& pose = drive.data.poses[static_cast<std::size_t>(view.pose)];
   const PoseBlock block = block_of(pose.T_map_vehicle);
   const std::vector<double> T(block.begin(), block.end());

@@ -108,7 +108,7 @@ inline CalibrationDrive calibration_drive(const EffectSizes& hidden,
     for (std::size_t c = 0; c < real.cameras.size(); ++c) {
       const MountedCamera& camera = real.cameras[c];
       const double late = effect_size(hidden, camera.name, "latency");
-      std::vector<CalibrationView> views;
+      std::vector<BundleObservation> views;
       for (std::size_t k = 0; k < drive.poses.size(); ++k) {
         const auto ms = static_cast<std::size_t>(
             std::llround(1e-6 * static_cast<double>(drive.data.poses[k].t_ns) - 1e3 * late));

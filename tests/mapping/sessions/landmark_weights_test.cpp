@@ -4,8 +4,8 @@
 
 #include "base/random.hpp"
 
-// Histories drawn from landmarks of which the test knows what happened to them: each session sees
-// a landmark that is there with its chance, and nothing of one that has gone.
+// The test draws when each landmark disappears. Until then each session sees it with the landmark's
+// own probability; afterwards no session sees it.
 
 namespace roadbook {
 namespace {

@@ -118,7 +118,7 @@ TEST(CompareMaps, CountsLandmarksThatAreGoneNewMovedOrNotKnown) {
   b.landmarks[6].p_frame.x() += 0.09;
   b.landmarks[7].covariance = unknown_covariance<Eigen::Matrix3d>();
   b.landmarks[7].p_frame.z() += 5.0;
-  b.landmarks.push_back(b.landmarks[8]);  // nobody saw it
+  b.landmarks.push_back(b.landmarks[8]);  // without observations
   const MapComparison c = compare_maps(a, b);
   EXPECT_EQ(c.landmarks.both, 23U);
   EXPECT_EQ(c.landmarks.only_a, 1U);
