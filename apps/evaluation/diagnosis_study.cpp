@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "apps/evaluation/hidden_drive.hpp"
+#include "base/format.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
@@ -51,7 +52,7 @@ void study(StudiedDrive& drive,
   if (!drive.effect.empty()) hidden[drive.effect] = drive.size;
   const bool moves = drive.kind == HiddenKind::kMotion;
   if (moves)
-    write_hidden_drive(folder, seed, length_m, hidden);
+    write_hidden_drive(folder, seed, length_m, hidden, drive.reference);
   else
     write_hidden_readings(folder, seed, drive.kind, hidden);
   DriveOptions options;
@@ -83,6 +84,9 @@ std::vector<EffectRange> effects_of(const DiagnosisStudyOptions& options) {
   });
   return all;
 }
+
+// Correlation times of a reference's errors [s].
+constexpr std::array kLastingS{0.3, 1.0, 3.0, 10.0};
 
 struct Plan {
   std::vector<StudiedDrive> drives;
@@ -117,6 +121,22 @@ void add_pairs(const DiagnosisStudyOptions& options,
   }
 }
 
+// Adds drives without an effect whose reference has errors that last, and as many with an effect.
+void add_lasting(const DiagnosisStudyOptions& options, Plan& plan) {
+  if (!is_asked_for("lasting", options.only)) return;
+  std::vector<EffectRange> own = practical_effects();
+  std::erase_if(own, [](const EffectRange& r) { return is_noise_effect(r.name); });
+  for (const double time_s : kLastingS)
+    for (std::size_t i = 0; i < options.lasting_drives; ++i) {
+      const std::string name = "diagnosis study lasting " + fixed(time_s, 1);
+      const std::uint64_t seed = Random(options.seed, name, i)() >> 1U;
+      plan.add(HiddenKind::kMotion, seed).reference = draw_lasting_reference(time_s, seed);
+      Random random(seed, "effect beside lasting errors");
+      plan.add(own[random.below(own.size())], random() >> 1U).reference =
+          draw_lasting_reference(time_s, plan.seeds.back());
+    }
+}
+
 // Drives of readings take one to two seconds to make, so the study uses three tenths of the number.
 std::size_t null_drives(const DiagnosisStudyOptions& options, HiddenKind kind) {
   return kind == HiddenKind::kMotion ? options.null_drives : (3 * options.null_drives + 9) / 10;
@@ -137,6 +157,7 @@ Plan plan_of(const DiagnosisStudyOptions& options) {
   for (const auto& [kind, own] : kinds)
     for (std::size_t i = 0; i < null_drives(options, kind); ++i)
       plan.add(kind, Random(options.seed, "diagnosis study null" + names.at(kind), i)() >> 1U);
+  add_lasting(options, plan);
   for (const auto& [kind, own] : kinds) add_pairs(options, names.at(kind), own, plan);
   for (const EffectRange& range : ranges)
     for (std::size_t i = 0; i < options.removed_an_effect; ++i)
@@ -169,6 +190,13 @@ bool StudiedDrive::all_named() const {
                                                 one.first) != c.inseparable.end();
     });
   });
+}
+
+bool StudiedDrive::raises_alarm() const {
+  const bool named = std::any_of(found.causes.begin(), found.causes.end(), [&](const auto& c) {
+    return reference.time_s <= 0.0 || c.effect != "poses.correlation";
+  });
+  return named || !found.unknown.empty();
 }
 
 std::string StudiedDrive::answer() const {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/evaluation/hidden_drive.hpp"
 #include "apps/evaluation/hidden_readings.hpp"
 #include "base/progress.hpp"
 #include "diagnosis/diagnose.hpp"
@@ -21,6 +22,7 @@ struct DiagnosisStudyOptions {
   std::uint64_t seed = 1;
   std::size_t drives_an_effect = 8;
   std::size_t null_drives = 40;
+  std::size_t lasting_drives = 0;     ///< for each correlation time of the reference's errors
   std::size_t pair_drives = 0;        ///< drives with two effects
   std::size_t removed_an_effect = 0;  ///< drives whose true cause is not in the catalogue
   double length_m = 300.0;            ///< of drives for the diagnosis of motion
@@ -35,7 +37,8 @@ struct StudiedDrive {
   HiddenKind kind = HiddenKind::kMotion;
   std::string effect;
   double size = 0.0;
-  EffectSizes beside;    ///< the second effect of a pair
+  EffectSizes beside;  ///< the second effect of a pair
+  LastingReference reference;
   bool removed = false;  ///< the effect is left out of the catalogue
   OracleAnswer oracle;
   Diagnosis found;
@@ -44,6 +47,9 @@ struct StudiedDrive {
   [[nodiscard]] bool named_first() const;
   [[nodiscard]] bool in_set() const;  ///< first, or in the confounded set of the first
   [[nodiscard]] bool silent() const { return found.causes.empty() && found.unknown.empty(); }
+  /// For a drive without an effect: something is named. That errors of the reference correlate is
+  /// right where they do.
+  [[nodiscard]] bool raises_alarm() const;
   /// Each hidden effect is named, or is in the confounded set of a named one.
   [[nodiscard]] bool all_named() const;
   /// A confident name without any flag. It is wrong if the true cause is not in the catalogue.
@@ -67,6 +73,9 @@ struct StudiedDrive {
 /// (except `seconds`). Throws StorageError, Interrupted.
 [[nodiscard]] std::vector<StudiedDrive> run_diagnosis_study(const DiagnosisStudyOptions& options,
                                                             const Progress& progress = {});
+
+/// True for effects that change the scatter of readings and no mean.
+[[nodiscard]] bool is_noise_effect(const std::string& effect);
 
 /// The share of drives whose effect was in the set, for a range of size over standard error.
 struct PowerBin {

@@ -14,6 +14,15 @@ std::string names_text(const std::vector<std::string>& names) {
   return text;
 }
 
+// Everything that the diagnosis names.
+std::string all_names(const StudiedDrive& d) {
+  std::vector<std::string> names;
+  for (const FoundCause& c : d.found.causes) names.push_back(c.effect);
+  for (const UnknownCause& u : d.found.unknown)
+    names.push_back(u.stream + "." + u.hook + "~" + u.depends_on);
+  return names_text(names);
+}
+
 // Formats a number as the stream does.
 std::string streamed(double value) {
   std::ostringstream text;
@@ -21,7 +30,9 @@ std::string streamed(double value) {
   return text.str();
 }
 
-bool is_noise(const std::string& effect) {
+}  // namespace
+
+bool is_noise_effect(const std::string& effect) {
   constexpr std::string_view kStream = "STREAM";
   const auto effects = noise_effects();
   return effect == "friction0.spatial_bias" ||
@@ -30,15 +41,14 @@ bool is_noise(const std::string& effect) {
          });
 }
 
-}  // namespace
-
 std::string drives_csv(const std::vector<StudiedDrive>& drives) {
   std::ostringstream csv;
   csv << "effect,size,second_effect,second_size,removed,size_over_sigma,weakest_over_sigma,"
-         "oracle_gain,answer,inseparable,right,found_size,low,high,held_out_gain,flags,cpu_s\n";
+         "oracle_gain,answer,inseparable,right,found_size,low,high,held_out_gain,flags,cpu_s,"
+         "reference_s,reference_m,reference_rad,white_m,names\n";
   for (const StudiedDrive& d : drives) {
     const bool pair = !d.beside.empty();
-    const bool right = d.effect.empty() ? d.silent()
+    const bool right = d.effect.empty() ? !d.raises_alarm()
                        : pair           ? d.all_named()
                        : d.removed      ? !d.unflagged()
                                         : d.in_set();
@@ -52,7 +62,9 @@ std::string drives_csv(const std::vector<StudiedDrive>& drives) {
       csv << cause->size << ',' << cause->low << ',' << cause->high << ',' << cause->gain.total;
     else
       csv << ",,,";
-    csv << ',' << d.found.unexplained.size() << ',' << d.seconds << '\n';
+    csv << ',' << d.found.unexplained.size() << ',' << d.seconds << ',' << d.reference.time_s << ','
+        << d.reference.position_m << ',' << d.reference.heading_rad << ',' << d.reference.white_m
+        << ',' << all_names(d) << '\n';
   }
   return csv.str();
 }
@@ -66,8 +78,9 @@ double best_power(const StudiedDrive& drive) {
 bool is_strong_pair(const StudiedDrive& drive) {
   constexpr double kStrong = 8.0;
   if (drive.oracle.weakest) return *drive.oracle.weakest >= kStrong;
-  return is_noise(drive.effect) && std::all_of(drive.beside.begin(), drive.beside.end(),
-                                               [](const auto& one) { return is_noise(one.first); });
+  return is_noise_effect(drive.effect) &&
+         std::all_of(drive.beside.begin(), drive.beside.end(),
+                     [](const auto& one) { return is_noise_effect(one.first); });
 }
 
 }  // namespace roadbook

@@ -152,6 +152,7 @@ DiagnosisStudyOptions study_options(const EvaluateCommand& command) {
   // The proportions of the full study: 1,000 null drives and 200 pairs of each kind (300 null
   // drives for friction, range, detector) at 30 drives per effect.
   options.null_drives = 100 * options.drives_an_effect / 3;
+  options.lasting_drives = 40 * options.drives_an_effect / 3;
   options.pair_drives = 20 * options.drives_an_effect / 3;
   options.removed_an_effect = (options.drives_an_effect + 9) / 10;
   if (command.quick) options.length_m = 150.0;
@@ -164,8 +165,30 @@ struct Tally {
   std::size_t nulls = 0, alarms = 0, pairs = 0, both = 0, removed = 0, silent = 0, alike = 0;
   std::size_t strong = 0, strong_both = 0;  // pairs
   double best_possible = 0.0;
+  // References whose errors last, by correlation time [s].
+  struct Lasting {
+    DiagnosisScore score;
+    std::size_t nulls = 0, alarms = 0, correlations = 0;
+    double best_possible = 0.0;
+  };
+  std::map<double, Lasting> lasting;
 
+  void add_lasting(const StudiedDrive& d) {
+    Lasting& of = lasting[d.reference.time_s];
+    const bool correlation =
+        std::any_of(d.found.causes.begin(), d.found.causes.end(),
+                    [](const FoundCause& c) { return c.effect == "poses.correlation"; });
+    of.correlations += correlation ? 1 : 0;
+    if (d.effect.empty()) {
+      ++of.nulls;
+      of.alarms += d.raises_alarm() ? 1 : 0;
+    } else {
+      of.score.add(d);
+      of.best_possible += best_power(d);
+    }
+  }
   void add(const StudiedDrive& d) {
+    if (d.reference.time_s > 0.0) return add_lasting(d);
     if (!d.beside.empty()) {
       ++pairs;
       both += d.all_named() ? 1 : 0;
@@ -191,6 +214,13 @@ struct Tally {
                      {"both_named", both},
                      {"strong", strong},
                      {"strong_both_named", strong_both}};
+    for (const auto& [time_s, of] : lasting)
+      json["reference_errors_last"].push_back({{"correlation_s", time_s},
+                                               {"drives", of.nulls},
+                                               {"alarms", of.alarms},
+                                               {"correlation_named", of.correlations},
+                                               {"with_an_effect", study_json(of.score)},
+                                               {"best_possible_in_set", of.best_possible}});
     json["cause_removed"] = {
         {"drives", removed}, {"unflagged_names", silent}, {"of_these_indistinguishable", alike}};
   }
@@ -202,6 +232,12 @@ struct Tally {
                 "; effect removed from the catalogue: a wrong name without a warning " +
                 std::to_string(silent) + " of " + std::to_string(removed) +
                 ", where the true effect fits no better in " + std::to_string(alike));
+    for (const auto& [time_s, of] : lasting)
+      console.say("errors of the reference that last " + fixed(time_s, 1) + " s: false alarms " +
+                  std::to_string(of.alarms) + " of " + std::to_string(of.nulls) +
+                  "; with an effect: in the set " + std::to_string(of.score.in_set) + " of " +
+                  std::to_string(of.score.drives) + ", best possible " +
+                  fixed(of.best_possible, 1));
   }
 };
 
@@ -233,7 +269,7 @@ void evaluate_causes(Console& console, const EvaluateCommand& command) {
   for (const StudiedDrive& d : drives) {
     all.add(d);
     kinds[d.kind].add(d);
-    if (!d.beside.empty() || d.removed) continue;
+    if (!d.beside.empty() || d.removed || d.reference.time_s > 0.0) continue;
     const std::string nothing = std::string("nothing (") + name_of(d.kind) + ")";
     ++confusion[d.effect.empty() ? nothing : d.effect][d.answer()];
     if (!d.effect.empty()) by_effect[d.effect].add(d);
@@ -241,6 +277,7 @@ void evaluate_causes(Console& console, const EvaluateCommand& command) {
   ordered_json json{
       {"experiment", "diagnosis"}, {"seed", options.seed}, {"length_m", options.length_m}};
   all.put(json);
+  json["effects"] = ordered_json::object();
   json["power"] = ordered_json::array();
   for (const PowerBin& bin : power_of(drives))
     json["power"].push_back(

@@ -50,10 +50,33 @@ VehicleMotion random_motion(std::uint64_t seed, double length_m, World& world) {
   return drive_line(line, 1, world.scenario.stops, vehicle, world.ground, driver, random);
 }
 
+// Errors that last, pose by pose: x, y [m] and heading [rad].
+std::vector<Eigen::Vector3d> lasting_errors(std::size_t poses,
+                                            std::uint64_t seed,
+                                            const LastingReference& reference) {
+  std::vector<Eigen::Vector3d> errors(poses, Eigen::Vector3d::Zero());
+  if (reference.time_s <= 0.0) return errors;
+  Random random(seed, "lasting errors of the reference");
+  const Eigen::Vector3d sigma(reference.position_m, reference.position_m, reference.heading_rad);
+  const double stays = std::exp(-kTruePoseStep / reference.time_s);
+  const auto draw = [&] {
+    const double x = random.normal();
+    const double y = random.normal();
+    return Eigen::Vector3d(sigma.cwiseProduct(Eigen::Vector3d(x, y, random.normal())));
+  };
+  Eigen::Vector3d error = draw();
+  for (Eigen::Vector3d& at : errors) {
+    at = error;
+    error = stays * error + std::sqrt(1.0 - stays * stays) * draw();
+  }
+  return errors;
+}
+
 std::vector<TimedPose> reference_poses(const VehicleMotion& motion,
                                        std::int64_t start_ns,
                                        std::uint64_t seed,
-                                       const EffectSizes& hidden) {
+                                       const EffectSizes& hidden,
+                                       const LastingReference& reference) {
   Random random(seed, "reference poses");
   PoseImperfections<double> off;
   off.latency = effect_size(hidden, "cam", "latency");
@@ -63,17 +86,20 @@ std::vector<TimedPose> reference_poses(const VehicleMotion& motion,
   off.bend = effect_size(hidden, "map", "bend");
   const VehicleState first = motion.at(-off.latency);
   const PlanarPose<double> origin{first.x, first.y, 0.0};
+  const auto lasting = lasting_errors(
+      static_cast<std::size_t>(motion.duration_s() / kTruePoseStep) + 1, seed, reference);
   std::vector<TimedPose> poses;
   for (int k = 0; kTruePoseStep * k <= motion.duration_s(); ++k) {
     const VehicleState s = motion.at(kTruePoseStep * k - off.latency);
     const auto read = predict_pose(off, PlanarPose<double>{s.x, s.y, s.heading}, origin);
     TimedPose p;
     p.t_ns = start_ns + std::int64_t{80'000'000} * k;
-    const double x = read.x + kReferenceSigmaM * random.normal();
-    const double y = read.y + kReferenceSigmaM * random.normal();
-    p.T_world_vehicle = Eigen::Translation3d(x, y, 0.0) *
-                        Eigen::AngleAxisd(read.heading + kReferenceSigmaRad * random.normal(),
-                                          Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d& off_by = lasting[static_cast<std::size_t>(k)];
+    const double x = read.x + off_by.x() + reference.white_m * random.normal();
+    const double y = read.y + off_by.y() + reference.white_m * random.normal();
+    const double heading = read.heading + off_by.z() + reference.white_rad * random.normal();
+    p.T_world_vehicle =
+        Eigen::Translation3d(x, y, 0.0) * Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
     poses.push_back(p);
   }
   return poses;
@@ -122,10 +148,26 @@ double draw_size(const EffectRange& range, std::uint64_t seed) {
   return random.uniform() < 0.5 && !range.positive ? -size : size;
 }
 
+LastingReference draw_lasting_reference(double time_s, std::uint64_t seed) {
+  constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  Random random(seed, "sizes of the reference's errors");
+  const auto draw = [&](double low, double high) {
+    return low * std::pow(high / low, random.uniform());
+  };
+  LastingReference reference;
+  reference.time_s = time_s;
+  reference.position_m = draw(0.01, 0.5);
+  reference.heading_rad = draw(0.03, 0.5) * kDegree;
+  reference.white_m = draw(0.003, 0.03);
+  reference.white_rad = draw(0.02, 0.1) * kDegree;
+  return reference;
+}
+
 void write_hidden_drive(const std::filesystem::path& folder,
                         std::uint64_t seed,
                         double length_m,
-                        const EffectSizes& hidden) {
+                        const EffectSizes& hidden,
+                        const LastingReference& reference) {
   World world;
   const VehicleMotion motion = random_motion(seed, length_m, world);
   const std::int64_t start_ns = drive_start_ns(0);
@@ -138,7 +180,7 @@ void write_hidden_drive(const std::filesystem::path& folder,
   DriveWriter writer(folder, {}, nominal_wheels(world.scenario.vehicle), options);
   for (const auto& r : simulate_wheels(world, motion, start_ns, streams)) writer.write_wheels(r);
   for (const auto& r : simulate_imu(motion, start_ns, streams)) writer.write_imu(r);
-  writer.write_truth(reference_poses(motion, start_ns, seed, hidden));
+  writer.write_truth(reference_poses(motion, start_ns, seed, hidden, reference));
   writer.finish();
 }
 
