@@ -71,9 +71,9 @@ struct Lane {
     PropertyMapPrior two;
     two.classes = {"dry", "wet"};
     two.counts = {3.0, 1.0};
-    PropertyPrior friction;
-    friction.classes = {{0.8, 2.0, 2.0, 0.01}, {0.4, 2.0, 2.0, 0.01}};
-    two.properties.push_back(friction);
+    PropertyPrior about;
+    about.classes = {{0.8, 2.0, 2.0, 0.01}, {0.4, 2.0, 2.0, 0.01}};
+    two.properties.push_back(about);
     return two;
   }();
   PropertyMap friction{strips.knots(), prior};

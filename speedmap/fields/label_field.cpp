@@ -96,8 +96,10 @@ void LabelField::at(const Eigen::Vector2d& p, std::vector<LabelAt>& found) const
     const LabelAt at = signed_distance(labels_[i], p);
     if (at.distance_m <= reach_m_) found.push_back(at);
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const LabelAt& a, const LabelAt& b) { return a.distance_m < b.distance_m; });
+  // Labels are few: insertion, in the order of the labels where distances are equal.
+  for (std::size_t i = 1; i < found.size(); ++i)
+    for (std::size_t k = i; k > 0 && found[k].distance_m < found[k - 1].distance_m; --k)
+      std::swap(found[k], found[k - 1]);
 }
 
 }  // namespace roadbook

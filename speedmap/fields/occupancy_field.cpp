@@ -91,14 +91,29 @@ std::optional<OccupancyAt> OccupancyField::at(const Eigen::Vector2d& p) const {
   const int row = static_cast<int>(first.y()) - 1;
   double odds = 0.0;
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-  for (int r = 0; r < 4; ++r)
-    for (int c = 0; c < 4; ++c) {
-      const auto i = static_cast<std::size_t>(c);
-      const auto k = static_cast<std::size_t>(r);
-      const double near = log_odds(column + c, row + r);
-      odds += x.value[i] * y.value[k] * near;
-      slope += near * Eigen::Vector2d(x.slope[i] * y.value[k], x.value[i] * y.slope[k]);
+  const bool within =
+      column >= 0 && row >= 0 && column + 3 < cells_.columns && row + 3 < cells_.rows;
+  for (std::size_t k = 0; k < 4; ++k) {
+    std::array<double, 4> near{};
+    const int at_row = row + static_cast<int>(k);
+    if (within) {  // most points: no check of every cell (bench/query_bench)
+      const float* const cells =
+          &log_odds_[static_cast<std::size_t>(at_row) * static_cast<std::size_t>(cells_.columns) +
+                     static_cast<std::size_t>(column)];
+      for (std::size_t i = 0; i < 4; ++i) near[i] = static_cast<double>(cells[i]);
+    } else {
+      for (std::size_t i = 0; i < 4; ++i)
+        near[i] = static_cast<double>(log_odds(column + static_cast<int>(i), at_row));
     }
+    double value = 0.0;
+    double along = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      value += x.value[i] * near[i];
+      along += x.slope[i] * near[i];
+    }
+    odds += y.value[k] * value;
+    slope += Eigen::Vector2d(y.value[k] * along, y.slope[k] * value);
+  }
   OccupancyAt at;
   at.probability = 1.0 / (1.0 + std::exp(-odds));
   at.gradient = at.probability * (1.0 - at.probability) / cells_.cell_m * slope;

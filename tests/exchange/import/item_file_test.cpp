@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/random.hpp"
 #include "exchange/export/geo_origin.hpp"
 #include "exchange/layers/item_table.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
@@ -137,6 +139,45 @@ TEST_F(ItemFiles, APolygonAcrossTheMeridianOf180DegreesIsOneArea) {
     EXPECT_EQ(area.distance_m({-50.0, 30.0}), 0.0);
     EXPECT_NEAR(area.distance_m({150.0, 0.0}), 150.0 - 106.47, 0.1);
   }
+}
+
+// Damaged files give items within bounds or a fault, and nothing else.
+TEST_F(ItemFiles, AnyBytesGiveItemsOrAFault) {
+  const Json ring = {{9.18, 48.78}, {9.1801, 48.78}, {9.1801, 48.7801}, {9.18, 48.78}};
+  Json collection{{"type", "FeatureCollection"}, {"features", Json::array()}};
+  collection["features"].push_back(item("MultiPolygon", Json::array({Json::array({ring})})));
+  collection["features"].push_back(item("LineString", {{9.18, 48.78}, {9.1801, 48.7801}}));
+  collection["features"].push_back(item("Point", {9.18, 48.78, 0}));
+  collection["features"][0]["properties"]["half_life_s"] = 50;
+  const std::string good = collection.dump();
+  const std::vector<std::string> words{"null", "1e308", "-1",   "[",      "]",     "{}", "[[",
+                                       "true", "\"\"",  "9e99", "1e-300", "Multi", ",",  "[]"};
+  Random random(9, "bytes");
+  int read_well = 0;
+  for (int k = 0; k < 4000; ++k) {
+    std::string text = good;
+    for (std::uint64_t n = 1 + random.below(3); n > 0; --n) {
+      const std::size_t at = random.below(text.size());
+      const std::string& word = words[random.below(words.size())];
+      if (random.below(3) == 0)
+        text[at] = static_cast<char>(random.below(256));
+      else
+        text.replace(at, random.below(12), word);
+    }
+    std::ofstream(folder_ / "any.geojson") << text;
+    for (const auto& origin :
+         {std::optional<GeoOrigin>(), std::optional(GeoOrigin{48.78, 9.18, 5})})
+      try {
+        for (const LayerItem& one :
+             read_item_file(folder_ / "any.geojson", origin, kNow_ns).items) {
+          EXPECT_TRUE(std::isfinite(one.distance_m({1.0, 2.0})));
+          EXPECT_GT(one.half_life_s, 0.0);
+          ++read_well;
+        }
+      } catch (const BadInput&) {
+      }
+  }
+  EXPECT_GT(read_well, 500);
 }
 
 TEST_F(ItemFiles, ReadsBackFromTheMapAndRefusesATableThatContradictsItself) {
