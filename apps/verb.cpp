@@ -67,11 +67,11 @@ ExitStatus dispatch(const std::vector<std::string>& words) {
 }  // namespace
 
 std::vector<Verb> all_verbs() {
-  return {simulate_verb(), check_verb(),     import_verb(),   map_verb(),      calibrate_verb(),
-          localise_verb(), compare_verb(),   curate_verb(),   edit_verb(),     overhead_verb(),
-          label_verb(),    roads_verb(),     detect_verb(),   friction_verb(), occupancy_verb(),
-          speeds_verb(),   query_verb(),     diagnose_verb(), export_verb(),   report_verb(),
-          evaluate_verb(), completion_verb()};
+  return {simulate_verb(), check_verb(),    import_verb(),    map_verb(),      calibrate_verb(),
+          localise_verb(), compare_verb(),  curate_verb(),    edit_verb(),     overhead_verb(),
+          label_verb(),    roads_verb(),    detect_verb(),    friction_verb(), occupancy_verb(),
+          layers_verb(),   speeds_verb(),   query_verb(),     diagnose_verb(), export_verb(),
+          report_verb(),   evaluate_verb(), completion_verb()};
 }
 
 Options options_of(const Verb& verb, CommonOptions& common) {

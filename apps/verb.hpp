@@ -37,6 +37,7 @@ Verb edit_verb();
 Verb localise_verb();
 Verb overhead_verb();
 Verb label_verb();
+Verb layers_verb();
 Verb roads_verb();
 Verb detect_verb();
 Verb occupancy_verb();

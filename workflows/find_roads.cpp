@@ -4,6 +4,7 @@
 
 #include "base/format.hpp"
 #include "exchange/layers/friction_layers.hpp"
+#include "exchange/layers/layer_ages.hpp"
 #include "exchange/layers/network_layers.hpp"
 #include "exchange/layers/path_layers.hpp"
 #include "exchange/layers/speed_layers.hpp"
@@ -40,6 +41,8 @@ std::optional<FrictionCarry> carry_friction(MapUpdate& update,
   if (!friction || (!friction->carry.moved && layers.has("friction"))) return std::nullopt;
   anchor_knots(map, *friction);
   write_friction_layers(update, *friction);
+  write_raster_age(update, layers, {"friction_mean", friction->date_ns, kFrictionHalfLife_s},
+                   friction->date_ns);
   return friction->carry;
 }
 

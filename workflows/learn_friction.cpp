@@ -6,6 +6,7 @@
 #include "base/format.hpp"
 #include "base/whole_file.hpp"
 #include "exchange/layers/friction_layers.hpp"
+#include "exchange/layers/layer_ages.hpp"
 #include "exchange/layers/path_layers.hpp"
 #include "exchange/layers/stored_paths.hpp"
 #include "mapping/pieces.hpp"
@@ -151,6 +152,8 @@ FrictionResult learn_friction(const FrictionRequest& request, Messages& messages
   anchor_knots(map, friction);
   drop_other_rasters(update, layers, friction.map);
   write_friction_layers(update, friction);
+  write_raster_age(update, layers, {"friction_mean", friction.date_ns, kFrictionHalfLife_s},
+                   friction.date_ns);
   update.note("friction", drive.name());
   update.commit();
   return {std::move(friction), std::move(config), summary, layers.has("speed_settings")};

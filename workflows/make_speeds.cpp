@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "exchange/layers/friction_layers.hpp"
+#include "exchange/layers/item_table.hpp"
+#include "exchange/layers/layer_ages.hpp"
 #include "exchange/layers/network_layers.hpp"
 #include "exchange/layers/path_layers.hpp"
 #include "exchange/layers/speed_layers.hpp"
@@ -108,17 +110,32 @@ SpeedSources sources_of(const SpeedsRequest& request,
   sources.spaces = outlines_of(layers, labels, "parking_spaces");
   sources.crossings = outlines_of(layers, labels, "crossings");
   sources.friction = read_friction_layers(layers, sources.paths);
+  sources.items = read_items(layers);
   sources.sightings = stored_sightings(layers, map);
   take_tables(request, map, sources, taken);
   if (request.truth) take_truth(map, request.map, config.sight.range_m, sources, taken);
   return sources;
 }
 
-// Returns the end of the newest session plus `days_later` days.
-std::int64_t time_of(const Map& map, double days_later) {
-  std::int64_t now_ns = 0;
-  for (const Session& session : map.sessions) now_ns = std::max(now_ns, session.t_end_ns);
-  return now_ns + static_cast<std::int64_t>(days_later * 86400.0) * 1'000'000'000;
+// The time for which the request wants the speed map.
+std::int64_t time_of(const SpeedsRequest& request,
+                     const Map& map,
+                     const std::vector<LayerItem>& items) {
+  std::int64_t newest_ns = 0;
+  for (const Session& session : map.sessions) newest_ns = std::max(newest_ns, session.t_end_ns);
+  return request.now_ns.value_or(time_of_items(items, newest_ns)) +
+         static_cast<std::int64_t>(request.days_later * 86400.0) * 1'000'000'000;
+}
+
+// Ages of the items of layers and of the map's rasters, which `make_speed_map` does not know.
+void add_other_ages(const MapLayers& layers, double speed_half_life_s, SpeedsResult& result) {
+  SpeedMap& speeds = result.speeds;
+  for (const LayerItem& item : result.items)
+    if (item.state(speeds.now_ns) != ItemState::kExpired) speeds.ages.put(item.aged());
+  const AgedLayers known = read_layer_ages(layers);
+  for (const char* raster : kRastersWithAge)
+    if (const AgedItem* aged = known.find(raster)) speeds.ages.put(*aged);
+  speeds.ages.put({"speed_map", speeds.date_ns, speed_half_life_s});
 }
 
 }  // namespace
@@ -139,10 +156,13 @@ SpeedsResult make_speeds(const SpeedsRequest& request) {
     keep_outlines(update, request.map, "crossings", sources.crossings);
   }
   const std::vector<SessionSightings> sightings = sources.sightings;
+  result.items = sources.items;
+  const std::int64_t now_ns = time_of(request, map, result.items);
   const auto earlier = request.local ? read_speed_layers(MapLayers(request.map)) : std::nullopt;
   LocalUpdate local{earlier ? &*earlier : nullptr, 0};
-  result.speeds = make_speed_map(map, std::move(sources), config, time_of(map, request.days_later),
-                                 result.visits, earlier ? &local : nullptr);
+  result.speeds = make_speed_map(map, std::move(sources), config, now_ns, result.visits,
+                                 earlier ? &local : nullptr);
+  add_other_ages(MapLayers(request.map), config.visit_half_life_days * 86400.0, result);
   if (earlier) result.places_solved = local.solved;
   write_speed_layers(update, result.speeds);
   write_sightings(update, sightings);

@@ -18,10 +18,13 @@ struct SpeedsRequest {
   std::vector<std::filesystem::path> detections;  ///< tables of people, in the vehicle's frame
   std::vector<std::string> observed;              ///< sessions in which the detector searched for
                                                   ///< people
-  bool replace = false;          ///< sessions in the tables lose their earlier detections
-  bool truth = false;            ///< people and places from the truth of simulated drives
-  bool local = false;            ///< solve only near new rows, to 1e-6
-  double days_later = 0.0;       ///< predict the speed map for this later time
+  bool replace = false;     ///< sessions in the tables lose their earlier detections
+  bool truth = false;       ///< people and places from the truth of simulated drives
+  bool local = false;       ///< solve only near new rows, to 1e-6
+  double days_later = 0.0;  ///< predict the speed map for this later time
+  /// The time for which ages count, since 1970; empty: the end of the newest session, or the time
+  /// of the newest item of a layer if that is later.
+  std::optional<std::int64_t> now_ns{};
   std::filesystem::path config;  ///< YAML; empty: the configuration of the map
 };
 
@@ -40,6 +43,7 @@ struct SpeedsResult {
   bool config_kept = false;                  ///< the map's own configuration was used
   std::vector<std::uint64_t> limits_lost;    ///< limits of lanes that no longer exist
   std::optional<std::size_t> places_solved;  ///< only with `local`; empty: all places
+  std::vector<LayerItem> items;              ///< all of the map; `state` tells which are used
   double presence_max = 0.0;
   std::string digest;  ///< of the map file afterwards
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drive/vehicle_yaml.hpp"
+#include "exchange/layers/layer_ages.hpp"
 #include "mapping/pieces.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/overhead/overhead_layers.hpp"
@@ -28,6 +29,11 @@ OverheadResult overhead_of_map(const OverheadRequest& request, Messages& message
                              : request.output;
   result.summary = make_overhead(result.map, pointers, folder, options, messages.progress());
   store_overhead(result.map, result.summary, &update);
+  std::int64_t newest_ns = 0;
+  for (std::size_t s = 0; s < result.map.sessions.size(); ++s)
+    if (drives[s]) newest_ns = std::max(newest_ns, result.map.sessions[s].t_end_ns);
+  write_raster_age(update, MapLayers(request.map), {"overhead", newest_ns, kOverheadHalfLife_s},
+                   newest_ns);
   update.commit();
   for (std::size_t s = 0; s < result.summary.vehicles.size(); ++s)
     if (drives[s]) result.vehicles.push_back(result.summary.vehicles[s].source);

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "exchange/layers/path_layers.hpp"
 #include "speedmap/presence/presence_map.hpp"
+#include "workflows/layers/slow_by_items.hpp"
 
 namespace roadbook {
 namespace {
@@ -49,6 +50,7 @@ class Builder {
         config_(config),
         grid_(lane_grid(sources_, config)),
         local_(local),
+        items_(sources_.items, now_ns, config.speed),
         presence_(presence_of_grid()) {
     result_.cell_m = config.presence.cell_m;
     result_.now_ns = now_ns;
@@ -108,6 +110,7 @@ class Builder {
     for (SpeedCell& cell : result_.cells) set_speed(cell);
     add_profiles();
     for (SpeedCell& cell : result_.cells) slow_in_bends(cell);
+    if (!items_.empty()) slow_by_items(result_, items_, sources_.friction);
     return std::move(result_);
   }
 
@@ -226,6 +229,7 @@ class Builder {
   const SpeedsConfig& config_;
   PresenceGrid grid_;
   LocalUpdate* local_;
+  ItemEffects items_;
   PresenceMap presence_;
   std::optional<LaneStrips> strips_;
   std::vector<PathPlace> places_;

@@ -7,6 +7,7 @@
 #include "exchange/layers/speed_layers.hpp"
 #include "mapping/session_track.hpp"
 #include "roadnet/network.hpp"
+#include "speedmap/items/layer_item.hpp"
 #include "workflows/people/detections.hpp"
 #include "workflows/settings/speeds_config.hpp"
 
@@ -20,6 +21,7 @@ struct SpeedSources {
   std::vector<Outline> crossings;
   std::vector<SessionSightings> sightings;
   std::optional<FrictionMap> friction;
+  std::vector<LayerItem> items;  ///< all of the map; stale ones have no effect
 };
 
 /// Counts how the sightings of a session were used.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/summaries/layers_summary.hpp"
 #include "base/error.hpp"
 #include "base/format.hpp"
 #include "base/text.hpp"
@@ -60,8 +61,42 @@ const char* to_text(SpeedLimitedBy by) {
       return "people";
     case SpeedLimitedBy::kGrip:
       return "grip";
+    case SpeedLimitedBy::kItem:
+      return "item";
   }
   return "";
+}
+
+ordered_json occupancy_json(const std::optional<OccupancyAnswer>& occupancy) {
+  if (!occupancy) return nullptr;
+  ordered_json json = value_json(occupancy->probability);
+  json["age_s"] = std::isnan(occupancy->age_s) ? ordered_json() : ordered_json(occupancy->age_s);
+  return json;
+}
+
+ordered_json labels_json(const PathAnswer& answer) {
+  if (!answer.labels) return nullptr;
+  ordered_json labels = ordered_json::array();
+  for (const LabelNearby& near : *answer.labels) {
+    const LabelledOutline& label = *near.label;
+    labels.push_back(
+        {{"id", label.id ? ordered_json(*label.id) : ordered_json()},
+         {"class", label.kind},
+         {"distance_m", near.distance.value},
+         {"sigma_m", std::isnan(label.sigma_m) ? ordered_json() : ordered_json(label.sigma_m)},
+         {"d_ds", near.distance.gradient.x()},
+         {"d_de", near.distance.gradient.y()}});
+  }
+  return labels;
+}
+
+// The items that hold at the place.
+ordered_json items_here(const LaneQueries& known, const PathAnswer& answer) {
+  ordered_json items = ordered_json::array();
+  const double half_width_m = 0.5 * known.speeds().options.vehicle_width_m;
+  for (const LayerItem* item : known.effects().holding(answer.position, half_width_m))
+    items.push_back(item_json(*item, known.now_ns()));
+  return items;
 }
 
 PathAnswer answer_of(const LaneQueries& known, const LanePlace& place) {
@@ -87,6 +122,9 @@ ordered_json answer_json(const LaneQueries& known,
                     {"presence", answer.presence ? value_json(*answer.presence) : ordered_json()}};
   json["properties"] = property_json(known, place);
   json["ground"] = ground_json(known, answer);
+  json["occupancy"] = occupancy_json(answer.occupancy);
+  json["labels"] = labels_json(answer);
+  json["items"] = items_here(known, answer);
   return json;
 }
 
@@ -98,6 +136,15 @@ void say_answer(const Console& console, const LanePlace& place, const PathAnswer
   if (answer.friction)
     line += ", friction " + fixed(answer.friction->mean, 3) + " +- " +
             fixed(std::sqrt(answer.friction->variance), 3);
+  if (answer.occupancy)
+    line += ", occupied " + fixed(answer.occupancy->probability.value, 3) + " +- " +
+            fixed(std::sqrt(answer.occupancy->probability.variance), 3);
+  if (answer.labels && !answer.labels->empty()) {
+    const LabelNearby& near = answer.labels->front();
+    line += ", " + near.label->kind +
+            (near.label->id ? " " + std::to_string(*near.label->id) : "") + " at " +
+            fixed(near.distance.value, 2) + " m";
+  }
   console.say(line);
 }
 
@@ -112,6 +159,7 @@ void print_answers(const Console& console,
     say_answer(console, place, answer);
     answers.push_back(answer_json(known, place, answer));
   }
+  say_stale_items(console, known.items(), known.now_ns());
   const auto date = [](std::int64_t t_ns) { return utc_text(t_ns); };
   console.result(
       {{"map_digest", known.stored().digest},
@@ -119,6 +167,7 @@ void print_answers(const Console& console,
        {"speed_coverage", known.speeds().coverage()},
        {"friction_date_utc",
         known.friction() ? ordered_json(date(known.friction()->date_ns)) : ordered_json()},
+       {"items", items_json(known.items(), known.now_ns())},
        {"answers", answers}});
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/summaries/layers_summary.hpp"
 #include "base/format.hpp"
 
 namespace roadbook {
@@ -96,6 +97,7 @@ void print_speeds(const Console& console, const SpeedsResult& result) {
     console.note("limits_mps: lane " + std::to_string(lane) +
                  " is no more; its limit holds nowhere (--config tells limits anew)");
   say_people_left_out(console, taken, result.visits);
+  say_stale_items(console, result.items, speeds.now_ns);
   say_speeds(console, speeds, result.visits.size(), result.presence_max);
   if (result.places_solved)
     console.say("solved for " + std::to_string(*result.places_solved) +
@@ -111,6 +113,7 @@ void print_speeds(const Console& console, const SpeedsResult& result) {
                   {"tables_without_rows", taken.empty_tables},
                   {"visits", visits_json(result.visits)},
                   {"lanes", lanes_json(speeds)},
+                  {"items", items_json(result.items, speeds.now_ns)},
                   {"config_kept", result.config_kept},
                   {"digest", result.digest}});
 }

@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "apps/now_option.hpp"
 #include "apps/summaries/query_summary.hpp"
 #include "apps/verb.hpp"
 #include "base/text.hpp"
@@ -13,6 +14,7 @@ struct QueryCommand {
   std::string lane;
   std::optional<double> s_m;
   double e_m = 0.0;
+  std::string now;
 };
 
 std::vector<LanePlace> places_asked(const QueryCommand& command, const LaneStrips& strips) {
@@ -44,7 +46,8 @@ std::vector<LanePlace> places_asked(const QueryCommand& command, const LaneStrip
 Verb query_verb() {
   auto command = std::make_shared<QueryCommand>();
   return {
-      "query", "prints speed, presence, friction and ground at a place of a lane",
+      "query",
+      "prints speed, presence, friction, ground, occupancy and labels at a place of a lane",
       [command](Options& options) {
         options.add("--map,-m", &command->map, "map file, after `speeds`").required = true;
         options.add("--at", &command->at,
@@ -53,9 +56,12 @@ Verb query_verb() {
         options.add("--s", &command->s_m, "path coordinate s [m]");
         options.add("--e", &command->e_m, "path coordinate e, positive to the left [m]").range = {
             -1e3, 1e3};
+        options.add("--now", &command->now,
+                    "time for which ages count (UTC); without: that of `speeds`, or of the newest "
+                    "item of a layer if that is later");
       },
       [command](Console& console, const CommonOptions&) {
-        const LaneQueries known(command->map);
+        const LaneQueries known(command->map, {true, now_option(command->now)});
         print_answers(console, known, places_asked(*command, known.strips()));
         return ExitStatus::kDone;
       }};

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
+
+#include "exchange/import/json_fields.hpp"
 
 namespace roadbook {
 namespace {
@@ -140,6 +143,23 @@ bool is_made_by_the_cut(const Line& ring, std::size_t i) {
 }
 
 }  // namespace
+
+std::optional<std::string> foreign_reference(const nlohmann::json& crs) {
+  static const std::set<std::string> known{"urn:ogc:def:crs:OGC:1.3:CRS84",
+                                           "urn:ogc:def:crs:OGC:1.3:CRS84h",
+                                           "urn:ogc:def:crs:OGC::CRS84",
+                                           "OGC:CRS84",
+                                           "urn:ogc:def:crs:EPSG::4326",
+                                           "urn:ogc:def:crs:EPSG::4979",
+                                           "EPSG:4326",
+                                           "EPSG:4979"};
+  if (crs.is_null()) return std::nullopt;
+  const auto properties = crs.is_object() ? crs.value("properties", nlohmann::json()) : crs;
+  const auto name =
+      properties.is_object() ? properties.value("name", nlohmann::json()) : nlohmann::json();
+  if (name.is_string() && known.contains(name.get<std::string>())) return std::nullopt;
+  return name.is_string() ? name.get<std::string>() : shown(crs);
+}
 
 nlohmann::json joined_at_antimeridian(const nlohmann::json& coordinates) {
   if (!coordinates.is_array() || coordinates.empty()) return nullptr;

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "exchange/export/geo_origin.hpp"
@@ -16,6 +18,10 @@ namespace roadbook {
 [[nodiscard]] nlohmann::ordered_json geojson_geometry(GeometryType type,
                                                       const std::vector<Eigen::Vector4d>& points,
                                                       const ToDegrees& to_degrees);
+
+/// The name of a coordinate reference system (member `crs` of the standard of 2008) that is not
+/// WGS84 in the order longitude, latitude; empty for WGS84 and where the file names none.
+[[nodiscard]] std::optional<std::string> foreign_reference(const nlohmann::json& crs);
 
 /// The ring of `coordinates` of a MultiPolygon whose parts, one ring each, meet at the meridian of
 /// 180 degrees, as `geojson_geometry` cuts them. Its longitudes continue beyond 180; corners of the

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "exchange/import/geojson_geometry.hpp"
 #include "exchange/import/json_fields.hpp"
@@ -46,20 +45,8 @@ class GeoJsonReader {
  private:
   // The older standard (2008) lets a file name its coordinate reference system.
   void check_reference(const Json& crs) {
-    static const std::set<std::string> known{"urn:ogc:def:crs:OGC:1.3:CRS84",
-                                             "urn:ogc:def:crs:OGC:1.3:CRS84h",
-                                             "urn:ogc:def:crs:OGC::CRS84",
-                                             "OGC:CRS84",
-                                             "urn:ogc:def:crs:EPSG::4326",
-                                             "urn:ogc:def:crs:EPSG::4979",
-                                             "EPSG:4326",
-                                             "EPSG:4979"};
-    if (crs.is_null()) return;
-    const Json properties = crs.is_object() ? crs.value("properties", Json()) : Json();
-    const Json name = properties.is_object() ? properties.value("name", Json()) : Json();
-    if (!name.is_string() || !known.contains(name.get<std::string>()))
-      fields_.fault("crs", name.is_string() ? name.get<std::string>() : shown(crs),
-                    "none, or WGS84 (urn:ogc:def:crs:OGC:1.3:CRS84)");
+    if (const auto other = foreign_reference(crs))
+      fields_.fault("crs", *other, "none, or WGS84 (urn:ogc:def:crs:OGC:1.3:CRS84)");
   }
 
   void leave_out(const Json& feature,

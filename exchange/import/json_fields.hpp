@@ -15,7 +15,9 @@ namespace roadbook {
 /// and the path of the value ("annotations[3].score") for faults: NaN and infinity as Python writes
 /// them, a number beyond 1.8e308, a superfluous comma, an early end, UTF-16, a key that occurs
 /// twice in one object (readers differ in the one they take), more than 64 levels.
-[[nodiscard]] nlohmann::json read_json_file(const std::filesystem::path& file);
+/// `content`: what the file should hold, for messages.
+[[nodiscard]] nlohmann::json read_json_file(const std::filesystem::path& file,
+                                            const std::string& content = "labels");
 
 /// Reads the fields of a file's objects and gathers their faults.
 class JsonFields {

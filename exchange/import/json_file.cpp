@@ -164,12 +164,12 @@ bool is_utf16(std::string_view bytes) {
 
 }  // namespace
 
-nlohmann::json read_json_file(const std::filesystem::path& file) {
-  const auto refuse = [&](const char* got, const char* want) {
+nlohmann::json read_json_file(const std::filesystem::path& file, const std::string& content) {
+  const auto refuse = [&](const char* got, const std::string& want) {
     throw BadInput({Severity::kError, file.string(), 0, "", got, want});
   };
-  if (!std::filesystem::exists(file)) refuse("no such file", "labels");
-  const std::string bytes = read_regular_file(file, "a JSON file of labels");
+  if (!std::filesystem::exists(file)) refuse("no such file", content);
+  const std::string bytes = read_regular_file(file, "a JSON file of " + content);
   if (is_utf16(bytes)) refuse("UTF-16 text", "JSON in UTF-8");
   JsonBuilder builder(bytes);
   if (!nlohmann::json::sax_parse(bytes, &builder)) throw BadInput(builder.problem(file.string()));

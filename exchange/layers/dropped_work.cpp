@@ -37,10 +37,11 @@ const std::vector<Work>& all_work() {
        "occupancy",
        {"occupancy", "occupancy_sigma", "occupancy_age", "occupancy_coverage", "occupancy_sessions",
         "occupancy_colours"}},
+      {"items of layers", "layers --put ITEMS.geojson", {"layer_items"}},
       {"people", "detect", {"people"}},
       {"speed map",
        "speeds",
-       {"dynamic_map", "speed_profile", "speed_settings", "speed_config", "layer_ages", "speed_map",
+       {"dynamic_map", "speed_profile", "speed_settings", "speed_config", "speed_map",
         "speed_sigma", "speed_colours", "sighting_sessions", "sight_blockers", "detections",
         "looks"}}};
   return work;
@@ -86,7 +87,8 @@ std::string joined(const std::vector<std::string>& names) {
 
 std::vector<DroppedWork> dropped_work(const std::vector<std::string>& layers,
                                       const std::filesystem::path& map) {
-  // Landmarks drawn as points are the map's own; they are left out where there are too many.
+  // Landmarks drawn as points are the map's own; they are left out where there are too many. Ages
+  // go and come with their layers.
   std::vector<DroppedWork> dropped;
   for (const Work& work : all_work())
     dropped.push_back({work.name,
@@ -94,7 +96,8 @@ std::vector<DroppedWork> dropped_work(const std::vector<std::string>& layers,
                        std::string("roadbook ") + work.verb + " -m " + shell_quoted(map.string())});
   dropped.push_back({"layers of other programs", {}, ""});
   for (const std::string& layer : layers)
-    if (layer != "landmark_points") dropped[work_of(layer, layers)].layers.push_back(layer);
+    if (layer != "landmark_points" && layer != "layer_ages")
+      dropped[work_of(layer, layers)].layers.push_back(layer);
   std::erase_if(dropped, [](const DroppedWork& work) { return work.layers.empty(); });
   return dropped;
 }

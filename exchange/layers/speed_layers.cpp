@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "exchange/layers/layer_ages.hpp"
 #include "exchange/layers/path_layers.hpp"
 #include "exchange/layers/speed_settings.hpp"
 #include "exchange/layers/table_row.hpp"
@@ -64,6 +65,9 @@ VectorLayer profile_layer(const SpeedMap& map) {
                   {"presence_sigma", FieldType::kReal},
                   {"friction", FieldType::kReal},
                   {"friction_sigma", FieldType::kReal},
+                  {"item_mps", FieldType::kReal},
+                  {"item_sigma_mps", FieldType::kReal},
+                  {"item_grip", FieldType::kReal},
                   {"date_utc", FieldType::kText},
                   {"coverage", FieldType::kReal},
                   {"sessions", FieldType::kText}};
@@ -72,27 +76,16 @@ VectorLayer profile_layer(const SpeedMap& map) {
   const double coverage = map.coverage();
   for (const LaneProfile& profile : map.profiles)
     for (const LaneSpeed& at : profile.places)
-      layer.features.push_back({{{at.position.x(), at.position.y(), 0.0, 0.0}},
-                                {std::to_string(profile.lane), std::int64_t{profile.closed ? 1 : 0},
-                                 at.s_m, at.speed, at.limit, finite_or_null(at.pedestrian),
-                                 finite_or_null(at.bend), finite_or_null(at.grip),
-                                 finite_or_null(at.grip_acceleration), finite_or_null(at.presence),
-                                 finite_or_null(at.presence_sigma), finite_or_null(at.friction),
-                                 finite_or_null(at.friction_sigma), date, coverage, sessions}});
+      layer.features.push_back(
+          {{{at.position.x(), at.position.y(), 0.0, 0.0}},
+           {std::to_string(profile.lane), std::int64_t{profile.closed ? 1 : 0}, at.s_m, at.speed,
+            at.limit, finite_or_null(at.pedestrian), finite_or_null(at.bend),
+            finite_or_null(at.grip), finite_or_null(at.grip_acceleration),
+            finite_or_null(at.presence), finite_or_null(at.presence_sigma),
+            finite_or_null(at.friction), finite_or_null(at.friction_sigma), finite_or_null(at.item),
+            std::isfinite(at.item) ? FieldValue(at.item_sigma) : FieldValue{}, at.item_grip, date,
+            coverage, sessions}});
   return layer;
-}
-
-PlainTable age_table(const SpeedMap& map) {
-  PlainTable table;
-  table.name = "layer_ages";
-  table.fields = {{"item", FieldType::kText},     {"layer", FieldType::kText},
-                  {"date_utc", FieldType::kText}, {"half_life_s", FieldType::kReal},
-                  {"weight", FieldType::kReal},   {"stale", FieldType::kInteger}};
-  for (const AgedItem& item : map.ages.all())
-    table.rows.push_back({item.name, std::string(to_text(item.layer())), utc_text(item.date_ns),
-                          item.half_life_s, item.weight(map.now_ns),
-                          std::int64_t{item.stale(map.now_ns) ? 1 : 0}});
-  return table;
 }
 
 void write_rasters(MapUpdate& update, const SpeedMap& map) {
@@ -161,6 +154,9 @@ void read_profiles(const std::string& file, const VectorLayer& layer, SpeedMap& 
     at.presence_sigma = row.number("presence_sigma", NAN);
     at.friction = row.number("friction", NAN);
     at.friction_sigma = row.number("friction_sigma", NAN);
+    at.item = row.number("item_mps", INFINITY);  // maps of earlier programs have no items
+    at.item_sigma = row.number("item_sigma_mps", 0.0);
+    at.item_grip = row.number("item_grip", 1.0);
     profile.places.push_back(at);
     if (profile.places.size() == 2) profile.step_m = at.s_m - profile.places[0].s_m;
   }
@@ -177,7 +173,7 @@ void write_speed_layers(MapUpdate& update, const SpeedMap& map) {
   ROADBOOK_ASSERT(!map.cells.empty());
   update.write_layer(cell_layer(map));
   update.write_layer(profile_layer(map));
-  update.write_table(age_table(map));
+  update.write_table(age_table(map.ages, map.now_ns));
   update.write_table(settings_table(map));
   write_rasters(update, map);
 }

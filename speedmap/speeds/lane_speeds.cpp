@@ -80,11 +80,12 @@ void LaneSpeedOptions::check() const {
 }
 
 double LaneSpeed::ceiling() const {
-  return std::max(kLeastSpeed, std::min({limit, pedestrian, bend, grip}));
+  return std::max(kLeastSpeed, std::min({limit, pedestrian, bend, grip, item}));
 }
 
 SpeedLimitedBy LaneSpeed::limited_by() const {
   if (speed < ceiling() - 1e-6) return SpeedLimitedBy::kMotion;
+  if (item < std::min({limit, pedestrian, bend, grip})) return SpeedLimitedBy::kItem;
   if (pedestrian <= std::min({limit, bend, grip})) return SpeedLimitedBy::kPedestrian;
   if (grip <= std::min(limit, bend)) return SpeedLimitedBy::kGrip;
   return bend < limit ? SpeedLimitedBy::kBend : SpeedLimitedBy::kLaw;
@@ -142,7 +143,7 @@ void make_feasible(std::vector<LaneSpeed>& places,
   ceiling.closed = closed;
   for (const LaneSpeed& place : places) {
     ceiling.speed.push_back(place.speed);
-    ceiling.grip_acceleration.push_back(place.grip_acceleration);
+    ceiling.grip_acceleration.push_back(place.item_grip * place.grip_acceleration);
   }
   const std::vector<double> speed = feasible_speeds(ceiling, options.motion);
   for (std::size_t i = 0; i < places.size(); ++i) places[i].speed = speed[i];

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -53,8 +54,8 @@ struct WayPoint {
 };
 
 /// The limit that determines a speed. kMotion: braking before, or accelerating after, a slower
-/// position.
-enum class SpeedLimitedBy : std::uint8_t { kLaw, kBend, kPedestrian, kGrip, kMotion };
+/// position. kItem: road works, a queue, wet ground and the like.
+enum class SpeedLimitedBy : std::uint8_t { kLaw, kBend, kPedestrian, kGrip, kMotion, kItem };
 
 /// One position of a profile. Speeds without a limit are infinite; unknown means are NaN.
 struct LaneSpeed {
@@ -70,6 +71,9 @@ struct LaneSpeed {
   double presence_sigma = 0.0;     ///< its standard deviation
   double friction = 0.0;           ///< mean at the position with the least grip
   double friction_sigma = 0.0;
+  double item = std::numeric_limits<double>::infinity();  ///< [m/s] by the items of the place
+  double item_sigma = 0.0;                                ///< its standard deviation
+  double item_grip = 1.0;  ///< factor of items on friction; not in `grip`, which is without items
   [[nodiscard]] double ceiling() const;
   [[nodiscard]] SpeedLimitedBy limited_by() const;
 };

@@ -22,12 +22,14 @@ LaneQuery::LaneQuery(const LaneStrips& strips,
                      const std::function<PlaceClass(const Eigen::Vector2d&)>& place,
                      const PropertyMap* friction,
                      const LaneSpeedOptions& options,
-                     double knot_spacing_m)
+                     double knot_spacing_m,
+                     const GroundFields& fields)
     : strip_(strips.find(profile.lane)),
       profile_(profile),
       place_(place),
       friction_(friction),
-      options_(options) {
+      options_(options),
+      fields_(fields) {
   if (strip_ == nullptr)
     throw InvalidOption("lane", std::to_string(profile.lane), "a lane with a path");
   KnotGridOptions grid;
@@ -77,7 +79,9 @@ SmoothValue LaneQuery::profile_at(double s_m) const {
   result.value = profile_.speed_at(s_m, &result.gradient.x());
   // The variance of what limits it at the nearest place; law and bends have none.
   const LaneSpeed& place = place_near(s_m);
-  if (place.pedestrian <= std::min({place.limit, place.bend, place.grip}))
+  if (place.item < std::min({place.limit, place.pedestrian, place.bend, place.grip}))
+    result.variance = place.item_sigma * place.item_sigma;
+  else if (place.pedestrian <= std::min({place.limit, place.bend, place.grip}))
     result.variance = std::pow((options_.max_speed - options_.min_speed) * place.presence_sigma, 2);
   else if (place.grip <= std::min(place.limit, place.bend)) {
     const double mu = place.grip_acceleration / (options_.grip_share * kGravity);
@@ -87,10 +91,12 @@ SmoothValue LaneQuery::profile_at(double s_m) const {
   return result;
 }
 
-SmoothValue LaneQuery::stopping_at(const PropertyMomentsDerivatives& friction) const {
+// `factor`: of friction, by the items of the place.
+SmoothValue LaneQuery::stopping_at(const PropertyMomentsDerivatives& friction,
+                                   double factor) const {
   const double z = quantile_of_normal(options_.grip_quantile);
   const double sigma = std::sqrt(friction.variance);
-  const double low = friction.mean + z * sigma;
+  const double low = factor * (friction.mean + z * sigma);
   SmoothValue result;
   result.value = grip_speed(std::max(low, kLeastFriction), 0.0, options_);
   if (low <= kLeastFriction) return result;  // flat
@@ -99,9 +105,32 @@ SmoothValue LaneQuery::stopping_at(const PropertyMomentsDerivatives& friction) c
   const double a = k * low;
   const double slope = k * (-t + (a * t * t + options_.sight_m) /
                                      std::sqrt(a * a * t * t + 2.0 * a * options_.sight_m));
-  result.gradient = slope * (friction.d_mean + 0.5 * z / sigma * friction.d_variance);
-  result.variance = slope * slope * friction.variance;
+  result.gradient = slope * factor * (friction.d_mean + 0.5 * z / sigma * friction.d_variance);
+  result.variance = slope * slope * factor * factor * friction.variance;
   return result;
+}
+
+// Gradients by x and y become those by s and e: the point is g(s) + e n(s), and n' = -k g'.
+void LaneQuery::add_fields(double s_m, double e_m, PathAnswer& answer) const {
+  if (fields_.occupancy == nullptr && fields_.labels == nullptr) return;
+  const PathPoint on_path = strip_->frame.curve().at(s_m);
+  const Eigen::Vector2d along = (1.0 - on_path.curvature * e_m) * on_path.tangent;
+  const Eigen::Vector2d left = on_path.left();
+  const auto in_path = [&](const Eigen::Vector2d& gradient) {
+    return Eigen::Vector2d(gradient.dot(along), gradient.dot(left));
+  };
+  if (fields_.occupancy != nullptr)
+    if (const auto at = fields_.occupancy->at(answer.position))
+      answer.occupancy = {{at->probability, in_path(at->gradient), at->sigma * at->sigma},
+                          at->age_s};
+  if (fields_.labels == nullptr) return;
+  thread_local std::vector<LabelAt> near;
+  fields_.labels->at(answer.position, near);
+  answer.labels.emplace();
+  answer.labels->reserve(near.size());
+  for (const LabelAt& at : near)
+    answer.labels->push_back(
+        {at.label, {at.distance_m, in_path(at.gradient), at.label->sigma_m * at.label->sigma_m}});
 }
 
 std::optional<PathAnswer> LaneQuery::at(double s_m, double e_m) const {
@@ -131,18 +160,21 @@ std::optional<PathAnswer> LaneQuery::at(double s_m, double e_m) const {
     if (!friction_->class_shares(place, answer.ground_shares)) answer.ground_shares.clear();
   }
   if (answer.friction) {
-    const SmoothValue stopping = stopping_at(*answer.friction);
+    const double factor = place_near(s_m).item_grip;
+    const SmoothValue stopping = stopping_at(*answer.friction, factor);
     if (stopping.value < answer.speed.value) {
       answer.speed = stopping;
-      answer.limited_by = SpeedLimitedBy::kGrip;
+      answer.limited_by = factor < 1.0 ? SpeedLimitedBy::kItem : SpeedLimitedBy::kGrip;
     }
   } else if (options_.unknown_grip > 0.0) {
-    const double assumed = grip_speed(options_.unknown_grip, 0.0, options_);
+    const double assumed = grip_speed(
+        std::max(kLeastFriction, place_near(s_m).item_grip * options_.unknown_grip), 0.0, options_);
     if (assumed < answer.speed.value) {
       answer.speed = {assumed, Eigen::Vector2d::Zero(), 0.0};
       answer.limited_by = SpeedLimitedBy::kGrip;
     }
   }
+  add_fields(s_m, e_m, answer);
   return answer;
 }
 

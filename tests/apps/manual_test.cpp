@@ -39,6 +39,11 @@ constexpr const char* kSpaces = R"({"type":"FeatureCollection","features":[{"typ
 [8.5417398,47.3769270],[8.5418061,47.3769270],[8.5418061,47.3769495],[8.5417398,47.3769495],
 [8.5417398,47.3769270]]]}}]})";
 
+// Road works at the start of the drive.
+constexpr const char* kWorks = R"({"type":"FeatureCollection","features":[{"type":"Feature",
+"properties":{"kind":"road_works","observed_utc":"2024-05-17T08:30:00Z","half_life_s":1e9},
+"geometry":{"type":"Point","coordinates":[8.5417,47.3769]}}]})";
+
 // Builds the map again. The new map keeps what `detect` learnt, and `detect` does not repeat its
 // notes on images.
 void expect_nothing_learnt_twice(const fs::path& folder) {
@@ -128,6 +133,7 @@ TEST(Manual, EveryExampleWorksFromTheDriveToTheReport) {
   const auto commands = examples();
   ASSERT_GE(commands.size(), 9U);
   std::ofstream(folder.path() / "spaces.geojson") << kSpaces;
+  std::ofstream(folder.path() / "works.geojson") << kWorks;
   for (const std::string& command : commands) {
     const auto result = test::run_example(command, " --json --quiet", folder.path());
     ASSERT_EQ(result.status, 0) << command << "\n" << result.err;

@@ -75,6 +75,14 @@ EUROC = (CAMERA + "====\n#timestamp [ns],filename\n0,000000000.png\n100000000,00
 GEOJSON = """{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"class": "parking_space",
 "space": 1, "version": 1}, "geometry": {"type": "Polygon", "coordinates": [[[9.18, 48.78], [9.1801, 48.78],
 [9.1801, 48.7801], [9.18, 48.78]]]}}]}"""
+ITEMS = """{"type": "FeatureCollection", "features": [
+{"type": "Feature", "properties": {"kind": "road_works", "observed_utc": "2023-11-14T20:00:00Z", "half_life_s": 7200,
+"speed_mps": 3, "reach_m": 4, "note": "a trench"}, "geometry": {"type": "LineString", "coordinates": [[9.18, 48.78],
+[9.1801, 48.7801]]}},
+{"type": "Feature", "properties": {"kind": "weather", "observed_utc": "2023-11-14T21:00:00+01:00", "grip_factor": 0.6},
+"geometry": {"type": "MultiPolygon", "coordinates": [[[[9.18, 48.78], [9.1801, 48.78], [9.1801, 48.7801], [9.18, 48.78]]]]}},
+{"type": "Feature", "properties": {"kind": "vehicle", "observed_utc": "2023-11-14T22:00:00.5Z"},
+"geometry": {"type": "Point", "coordinates": [9.18, 48.78, 0]}}]}"""
 COCO = """{"images": [{"id": 1, "width": 100, "height": 100, "file_name": "overhead.png"}],
 "categories": [{"id": 1, "name": "parking_space"}],
 "annotations": [{"id": 1, "image_id": 1, "category_id": 1, "bbox": [1, 2, 30, 40], "segmentation": [[1, 2, 31, 2, 31, 42]]}]}"""
@@ -135,6 +143,7 @@ def inputs(name, place):
         "calibration": chosen([CHAIN, OPENCV, CAMODOCAL, BASALT, CHAIN]),
         "npy": [npy([0.5 * i for i in range(12)]), npy([])],
         "import": chosen([KITTI, KITTI360, KAIST, EUROC]),
+        "items": chosen([ITEMS, ITEMS.replace("9.18", "9.1").replace("48.78", "4.7")]),
         "labels": chosen([COCO, GEOJSON, YOLO]),
         "plain_log": [LOG.encode(), (LOG.split("====")[0] + "====\nMATLAB 5.0 MAT-file" + 200 * "\0").encode()],
         "edits": [b"edits:\n  - loop: {a: m@1, b: x@2, motion: [1, 2, 3]}\n"

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/format.hpp"
+#include "exchange/layers/layer_ages.hpp"
 #include "mapping/occupancy/reading_dependence.hpp"
 #include "mapping/pieces.hpp"
 #include "workflows/occupancy/beam_model_file.hpp"
@@ -187,6 +188,9 @@ OccupancyResult make_occupancy(const OccupancyRequest& request, Messages& messag
     result.truth = score_occupancy(result.grid, result.stored.prior_log_odds(),
                                    true_cells(result.grid.shape, *surfaces));
   write_occupancy_layers(update, result.stored, result.grid);
+  std::int64_t newest_ns = 0;
+  for (const OccupancyPatch& p : result.stored.patches) newest_ns = std::max(newest_ns, p.end_ns);
+  write_raster_age(update, layers, {"occupancy", newest_ns, kOccupancyHalfLife_s}, newest_ns);
   std::string names;
   for (const OccupancyOfDrive& d : result.drives)
     names += (names.empty() ? "" : ", ") + d.drive.drive;

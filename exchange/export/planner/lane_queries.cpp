@@ -1,6 +1,7 @@
 #include "exchange/export/planner/lane_queries.hpp"
 
 #include "base/error.hpp"
+#include "exchange/layers/item_table.hpp"
 
 namespace roadbook {
 namespace {
@@ -15,11 +16,16 @@ SpeedMap require_speeds(const std::filesystem::path& map, const std::vector<Lane
 
 }  // namespace
 
-LaneQueries::LaneQueries(const std::filesystem::path& map)
+LaneQueries::LaneQueries(const std::filesystem::path& map, const QueryContent& content)
     : stored_(load_paths(map)),
       speeds_(require_speeds(map, stored_.paths)),
+      items_(content.everything ? read_items(MapLayers(map)) : std::vector<LayerItem>()),
+      now_ns_(content.now_ns.value_or(time_of_items(items_, speeds_.now_ns))),
+      effects_(items_, now_ns_, speeds_.options),
       friction_(read_friction_layers(MapLayers(map), stored_.paths)),
       strips_(friction_ ? friction_->strips : LaneStrips(stored_.paths, 1.0, 2.0)) {
+  if (content.everything) read_everything(MapLayers(map));
+  const GroundFields fields{occupancy_ ? &*occupancy_ : nullptr, labels_ ? &*labels_ : nullptr};
   const auto cell_at = cells_of(speeds_);
   const auto place = [cell_at](const Eigen::Vector2d& p) {
     const SpeedCell* const cell = cell_at(p);
@@ -27,9 +33,23 @@ LaneQueries::LaneQueries(const std::filesystem::path& map)
   };
   for (const LaneProfile& profile : speeds_.profiles)
     if (strips_.find(profile.lane) != nullptr)
-      queries_.emplace(profile.lane,
-                       LaneQuery(strips_, profile, presence_of(speeds_), place,
-                                 friction_ ? &friction_->map : nullptr, speeds_.options));
+      queries_.emplace(profile.lane, LaneQuery(strips_, profile, presence_of(speeds_), place,
+                                               friction_ ? &friction_->map : nullptr,
+                                               speeds_.options, 1.0, fields));
+}
+
+void LaneQueries::read_everything(const MapLayers& layers) {
+  occupancy_ = read_occupancy_field(layers, now_ns_);
+  labels_ = read_label_field(layers);
+  if (items_.empty()) return;
+  // The stored profiles have the items at the time of `speeds`.
+  for (LaneProfile& profile : speeds_.profiles)
+    for (const Lane& lane : stored_.network.lanes)
+      if (lane.id == profile.lane) {
+        profile.from_intersection = lane.from_intersection;
+        profile.to_intersection = lane.to_intersection;
+      }
+  apply_items(speeds_.profiles, effects_, speeds_.options);
 }
 
 }  // namespace roadbook

@@ -107,6 +107,70 @@ TEST_F(Query, TellsSpeedFrictionLaneAndLabelsWithTheirGradients) {
   EXPECT_GT(by[SpeedLimitedBy::kGrip], 100);
 }
 
+// Occupancy and labels are functions of the plane. Along the bent lane their gradients change with
+// the curvature.
+TEST_F(Query, TellsOccupancyAndLabelsWithTheirGradients) {
+  OccupancyCells cells;
+  cells.low = {-26.0, -26.0};
+  cells.cell_m = 0.5;
+  cells.columns = cells.rows = 104;
+  Random random(8, "cells");
+  for (std::size_t i = 0; i < 104 * 104; ++i) {
+    const bool unknown = i % 104 > 90;
+    cells.probability.push_back(unknown ? NAN : static_cast<float>(random.uniform(0.1, 0.9)));
+    cells.sigma.push_back(0.05F);
+    cells.age_s.push_back(12.0F);
+  }
+  const OccupancyField occupancy(cells);
+  const LabelField labels({{3, "parking_space", 0.2, {{16, 8}, {21, 8}, {21, 11}, {16, 11}}},
+                           {{}, "crossing", NAN, {{-22, 0}, {-17, 0}, {-17, 3}, {-22, 3}}}});
+  const LaneQuery query(strips_, profile_, presence_, {}, &friction_, options_, 1.0,
+                        {&occupancy, &labels});
+  constexpr double kStep = 1e-5;
+  std::size_t known = 0, unknown = 0, near = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const double s = random.uniform(0.0, 125.0);
+    const double e = random.uniform(-3.9, 3.9);
+    const auto at = query.at(s, e);
+    ASSERT_TRUE(at && at->labels);
+    const auto beside = [&](double ds, double de) { return query.at(s + ds, e + de); };
+    const auto up_s = beside(kStep, 0.0), down_s = beside(-kStep, 0.0);
+    const auto up_e = beside(0.0, kStep), down_e = beside(0.0, -kStep);
+    ASSERT_TRUE(up_s && down_s && up_e && down_e);
+    ++(at->occupancy ? known : unknown);
+    const auto compare = [&](const auto& value, const Eigen::Vector2d& gradient) {
+      EXPECT_NEAR((value(*up_s) - value(*down_s)) / (2.0 * kStep), gradient.x(), 1e-6);
+      EXPECT_NEAR((value(*up_e) - value(*down_e)) / (2.0 * kStep), gradient.y(), 1e-6);
+    };
+    // Second derivatives jump at the middles of cells.
+    const Eigen::Array2d share = (at->position - cells.low).array() / cells.cell_m - 0.5;
+    const bool smooth = ((share - share.round()).abs() > 1e-3).all();
+    if (smooth && at->occupancy && up_s->occupancy && down_s->occupancy && up_e->occupancy &&
+        down_e->occupancy)
+      compare([](const PathAnswer& a) { return a.occupancy->probability.value; },
+              at->occupancy->probability.gradient);
+    if (at->occupancy) {
+      EXPECT_NEAR(at->occupancy->probability.variance, 0.0025, 1e-9);
+      EXPECT_EQ(at->occupancy->age_s, 12.0);
+    }
+    if (at->labels->size() != 1) continue;
+    const LabelNearby& label = at->labels->front();
+    ++near;
+    EXPECT_EQ(std::isnan(label.distance.variance), label.label->kind == "crossing");
+    EXPECT_EQ(label.label->id.has_value(), label.label->kind == "parking_space");
+    // Within a label the nearest edge changes on the diagonals.
+    if (label.distance.value > 0.0)
+      compare([](const PathAnswer& a) { return a.labels->front().distance.value; },
+              label.distance.gradient);
+  }
+  EXPECT_GT(known, 1500U);
+  EXPECT_GT(unknown, 100U);
+  EXPECT_GT(near, 300U);
+  const auto without = LaneQuery(strips_, profile_, presence_, {}, &friction_, options_).at(5.0, 0);
+  EXPECT_FALSE(without->occupancy);
+  EXPECT_FALSE(without->labels);
+}
+
 TEST_F(Query, HasNoSeamAndNothingOutside) {
   const LaneQuery query(strips_, profile_, presence_, {}, &friction_, options_);
   const double length = strips_.strips()[0].length_m();
