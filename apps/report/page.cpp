@@ -10,6 +10,7 @@
 #include "apps/report/quality_section.hpp"
 #include "apps/report/speed_section.hpp"
 #include "apps/report/svg_plot.hpp"
+#include "apps/report/value_table.hpp"
 #include "apps/summaries/offset_text.hpp"
 #include "base/format.hpp"
 #include "mapping/store/map_file_names.hpp"
@@ -130,7 +131,7 @@ std::string sessions(const ReportData& data) {
   else if (!data.truth.apart.empty())
     html += "<p>The sessions are not compared together: " + escaped(data.truth.apart) + ".</p>";
   for (const std::string& line : data.truth.without_truth) html += "<p>" + escaped(line) + ".</p>";
-  return html_section("Sessions", html);
+  return html_section("Sessions", html + value_table(data.map, data.value));
 }
 
 std::string overhead(const ReportData& data) {

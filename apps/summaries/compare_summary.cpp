@@ -1,7 +1,9 @@
 #include "apps/summaries/compare_summary.hpp"
 
 #include <nlohmann/json.hpp>
+#include <tuple>
 
+#include "apps/summaries/value_summary.hpp"
 #include "base/format.hpp"
 
 namespace roadbook {
@@ -88,7 +90,8 @@ nlohmann::ordered_json comparison_json(const FileComparison& c) {
             {"length_b_m", c.lanes.length_b_m},
             {"share_a", or_null(c.lanes.share_a)},
             {"share_b", or_null(c.lanes.share_b)}}},
-          {"layers", layers}};
+          {"layers", layers},
+          {"value", nullptr}};
 }
 
 void say_poses(const Console& console, const FileComparison& c) {
@@ -119,7 +122,10 @@ std::string share_text(const std::optional<double>& share) {
 
 }  // namespace
 
-void print_comparison(const Console& console, const FileComparison& c) {
+void print_comparison(const Console& console,
+                      const FileComparison& c,
+                      bool with_value,
+                      const std::filesystem::path& page) {
   console.say("sessions: in both " + names_text(c.maps.common_sessions) + "; only in A " +
               names_text(c.maps.sessions_only_a) + "; only in B " +
               names_text(c.maps.sessions_only_b));
@@ -139,7 +145,17 @@ void print_comparison(const Console& console, const FileComparison& c) {
     if (!layer.same) changed.push_back(layer.name);
   console.say("layers: changed " + names_text(changed) + "; only in A " +
               names_text(c.layers.only_a) + "; only in B " + names_text(c.layers.only_b));
-  console.result(comparison_json(c));
+  for (const auto& [name, map, value] :
+       {std::tuple("A", &c.a, &c.value_a), std::tuple("B", &c.b, &c.value_b)})
+    if (!value->empty())
+      console.say("value of sessions in " + std::string(name) +
+                  " (sigma of the other sessions' poses): " + value_text(*map, *value));
+  auto object = comparison_json(c);
+  if (with_value)
+    object["value"] = {{"a", value_json(c.a, c.value_a)}, {"b", value_json(c.b, c.value_b)}};
+  object["page"] = page.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(page.string());
+  if (!page.empty()) console.say("page: " + page.string());
+  console.result(object);
 }
 
 }  // namespace roadbook

@@ -5,7 +5,11 @@
 
 namespace roadbook {
 
-/// Prints what `compare` found: lines for a reader, or with `--json` one object.
-void print_comparison(const Console& console, const FileComparison& comparison);
+/// Prints what `compare` found: lines for a reader, or with `--json` one object. `with_value`:
+/// the value of sessions was requested. `page`: the HTML file that was written, or empty.
+void print_comparison(const Console& console,
+                      const FileComparison& comparison,
+                      bool with_value,
+                      const std::filesystem::path& page);
 
 }  // namespace roadbook

@@ -109,16 +109,6 @@ nlohmann::ordered_json result_of_last_run(const std::filesystem::path& map,
   return result;
 }
 
-nlohmann::ordered_json dropped_json(const std::vector<DroppedWork>& dropped) {
-  auto list = nlohmann::ordered_json::array();
-  for (const DroppedWork& work : dropped)
-    list.push_back({{"name", work.name},
-                    {"layers", work.layers},
-                    {"command", work.command.empty() ? nlohmann::ordered_json()
-                                                     : nlohmann::ordered_json(work.command)}});
-  return list;
-}
-
 void print_unchanged(const Console& console,
                      const MapSummary& summary,
                      const std::filesystem::path& map) {
@@ -130,6 +120,16 @@ void print_unchanged(const Console& console,
 }
 
 }  // namespace
+
+nlohmann::ordered_json dropped_json(const std::vector<DroppedWork>& dropped) {
+  auto list = nlohmann::ordered_json::array();
+  for (const DroppedWork& work : dropped)
+    list.push_back({{"name", work.name},
+                    {"layers", work.layers},
+                    {"command", work.command.empty() ? nlohmann::ordered_json()
+                                                     : nlohmann::ordered_json(work.command)}});
+  return list;
+}
 
 void print_map(const Console& console, const MapResult& result, const std::filesystem::path& map) {
   const MapSummary& summary = result.summary;

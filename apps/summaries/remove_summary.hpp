@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// Prints what the removal of `session` left and took.
+/// Prints the result of the removal of `session`.
 void print_removal(const Console& console, const RemoveResult& result, const std::string& session);
 
 }  // namespace roadbook

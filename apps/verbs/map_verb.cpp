@@ -1,7 +1,7 @@
 #include <memory>
 
+#include "apps/map_task.hpp"
 #include "apps/summaries/map_summary.hpp"
-#include "apps/summaries/remove_summary.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
 #include "mapping/store/map_file_lock.hpp"
@@ -23,7 +23,7 @@ Verb map_verb() {
   auto command = std::make_shared<MapRequest>();
   auto solver = std::make_shared<std::string>("own");
   auto adjust = std::make_shared<std::string>();
-  auto removal = std::make_shared<RemoveRequest>();
+  auto task = std::make_shared<MapTask>();
   return {
       "map", "builds a map from one drive or several",
       [=](Options& options) {
@@ -44,23 +44,14 @@ Verb map_verb() {
         options.add("--as", &command->options.session_name, "name of the session");
         options.add("--replace", &command->options.replace,
                     "build a map of these drives alone, replacing an existing one");
-        options.add("--remove", &removal->session, "take the session of this name out of the map");
-        options.add("--drop-labels", &removal->drop_labels,
-                    "with --remove: delete labels that no earlier session shows");
+        add_task_options(options, *task);
         options.add("--seed", &command->options.seed, "seed of all random numbers");
       },
       [=](Console& console, const CommonOptions& common) {
-        if (command->drives.empty() == removal->session.empty())
-          throw InvalidOption("DRIVE", command->drives.empty() ? "none" : "drives with --remove",
-                              "drives to map, or --remove NAME");
-        if (!removal->session.empty()) {
-          removal->map = command->map;
-          print_removal(console, remove_session(*removal), removal->session);
-          return ExitStatus::kDone;
-        }
-        command->options.num_threads = common.threads;
-        if (*solver == "ceres") command->options.bundle.bundle.solver = LeastSquaresSolver::kCeres;
         command->adjust = session_adjust_from(*adjust);
+        command->options.num_threads = common.threads;
+        if (run_map_task(console, *command, *task)) return ExitStatus::kDone;
+        if (*solver == "ceres") command->options.bundle.bundle.solver = LeastSquaresSolver::kCeres;
         const MapHold hold(command->map);  // until the map also has the summary of this run
         print_map(console, map_drives(*command, console), command->map);
         return ExitStatus::kDone;

@@ -8,6 +8,7 @@
 #include "apps/report/label_shift_section.hpp"
 #include "apps/report/page.hpp"
 #include "apps/summaries/report_truth.hpp"
+#include "apps/summaries/value_summary.hpp"
 #include "apps/verb.hpp"
 #include "base/whole_file.hpp"
 
@@ -33,6 +34,7 @@ nlohmann::ordered_json report_json(const ReportData& data,
                                    {"loops", data.map.loops.size()},
                                    {"warnings", data.warnings.size()},
                                    {"digest", data.meta.digest}};
+  object["value"] = value_json(data.map, data.value);
   if (data.labels) object["labels"] = label_report_json(*data.labels, rounds);
   add_truth(data, object);
   return object;

@@ -11,26 +11,16 @@
 #include "mapping/edits/edit_motion.hpp"
 #include "mapping/loops/loop_misfit.hpp"
 #include "mapping/optimisation/graph_relaxation.hpp"
+#include "mapping/step_information.hpp"
 #include "vo/planar_motion.hpp"
 
 namespace roadbook {
 namespace {
 
-// Standard deviations of a step of odometry that may drift.
-constexpr double kStepSigmaM = 0.005;
-constexpr double kStepSigmaShare = 0.01;  // of its length
-constexpr double kStepSigmaRad = 0.002;
 constexpr double kLeastJoinM = 0.2;  // odometry that an edit bends by more is contradicted
 constexpr double kLeastJoinRad = 0.05;
 constexpr double kAroundM = 8.0;  // of a place of kNotALoop
 constexpr std::size_t kNamed = 3;
-
-Matrix6d information_of(double sigma_m, double sigma_rad) {
-  Matrix6d information = Matrix6d::Zero();
-  information.diagonal() << Eigen::Vector3d::Constant(1.0 / (sigma_m * sigma_m)),
-      Eigen::Vector3d::Constant(1.0 / (sigma_rad * sigma_rad));
-  return information;
-}
 
 // Steps between successive keyframes. A map that a wrong loop has bent knows them by its wheels.
 std::vector<RelativePose> steps_of(const Map& map, bool by_wheels) {
@@ -46,9 +36,7 @@ std::vector<RelativePose> steps_of(const Map& map, bool by_wheels) {
       continue;
     }
     const Eigen::Isometry3d T = map.T_map_vehicle(to - 1).inverse() * map.T_map_vehicle(to);
-    steps.push_back(
-        {to - 1, to, T,
-         information_of(kStepSigmaM + kStepSigmaShare * T.translation().norm(), kStepSigmaRad)});
+    steps.push_back({to - 1, to, T, step_information(T)});
   }
   return steps;
 }
@@ -129,7 +117,7 @@ EditTerms terms_of_edits(const Map& map, const std::vector<MapEdit>& edits) {
         const Eigen::Isometry3d flat =
             pose_from_planar(now.translation().x(), now.translation().y(), heading_of(now));
         prior.T_map_vehicle = prior.T_map_vehicle * (flat.inverse() * now);
-        prior.information = information_of(edit.sigma_m, edit.sigma_rad);
+        prior.information = information_of_sigmas(edit.sigma_m, edit.sigma_rad);
         terms.anchors.push_back(prior);
         break;
       }

@@ -159,14 +159,18 @@ std::map<std::string, std::string> extension_meta(const std::filesystem::path& f
   return meta;
 }
 
-std::map<std::string, std::string> removal_meta(const std::filesystem::path& file,
-                                                const std::string& drive_digest) {
+std::map<std::string, std::string> meta_after(const std::filesystem::path& file,
+                                              const std::string& change) {
   const MapMeta before = load_meta(file);
   const auto inputs = before.values.find(kInputs);
   Sha256 digest;
-  digest.update((inputs == before.values.end() ? std::string() : inputs->second) + " without " +
-                drive_digest);
+  digest.update((inputs == before.values.end() ? std::string() : inputs->second) + " " + change);
   return {{kInputs, digest.hex()}, {kExtension, ""}, {kExtensionBuild, ""}};
+}
+
+std::map<std::string, std::string> removal_meta(const std::filesystem::path& file,
+                                                const std::string& drive_digest) {
+  return meta_after(file, "without " + drive_digest);
 }
 
 bool is_extended_by(const std::filesystem::path& file,

@@ -54,6 +54,10 @@ namespace roadbook {
                                                                 const std::vector<Drive>& drives,
                                                                 const MapOptions& options);
 
+/// Values of `map_meta` for a map that a change makes from the one in `file`, in words or digests.
+[[nodiscard]] std::map<std::string, std::string> meta_after(const std::filesystem::path& file,
+                                                            const std::string& change);
+
 /// Values of `map_meta` for the map in `file` after the drive with this digest was taken out.
 [[nodiscard]] std::map<std::string, std::string> removal_meta(const std::filesystem::path& file,
                                                               const std::string& drive_digest);

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "mapping/pipeline/landmark_covariance.hpp"
 #include "mapping/pipeline/track_agreement.hpp"
 
 namespace roadbook {
@@ -152,6 +153,30 @@ void fix_landmarks(const Map& map, const std::vector<int>& landmarks, BundleStag
   }
 }
 
+void add_landmark_covariances(const JoinedSession& joined,
+                              const MapOptions& options,
+                              Adjusted& adjusted) {
+  std::vector<std::size_t> places;
+  std::vector<JoinedTrack> tracks;
+  // Those that the session sees, and those that it moved.
+  const auto has_moved = [&](std::size_t t) {
+    return t >= joined.tracks.size() || adjusted.tracks[t].p_map != joined.tracks[t].p_map;
+  };
+  for (std::size_t t = 0; t < adjusted.tracks.size(); ++t)
+    if (adjusted.tracks[t].p_map && (joined.has_session(adjusted.tracks[t]) || has_moved(t))) {
+      places.push_back(t);
+      tracks.push_back(adjusted.tracks[t]);
+    }
+  const auto found = landmark_covariances(joined.input, adjusted.T_map_vehicle, tracks,
+                                          options.bundle.feature_sigma_px, options.triangulation);
+  adjusted.landmark_covariance.factor = found.factor;
+  adjusted.landmark_covariance.compared = found.compared;
+  adjusted.landmark_covariance.of_track.assign(adjusted.tracks.size(),
+                                               unknown_covariance<Eigen::Matrix3d>());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    adjusted.landmark_covariance.of_track[places[i]] = found.of_track[i];
+}
+
 }  // namespace
 
 Adjusted adjust_session(const JoinedSession& joined,
@@ -214,6 +239,35 @@ Adjusted adjust_session(const JoinedSession& joined,
   for (int& track : adjusted.stage.track_of_point) track = static_cast<int>(chosen[at(track)]);
   judge_tracks(adjusted.result.reprojection_median_px);
   return adjusted;
+}
+
+void add_covariances_of_session(const JoinedSession& joined,
+                                const std::vector<CommonError>& suspected,
+                                const MapOptions& options,
+                                Adjusted& adjusted) {
+  if (!options.covariances) return;
+  if (options.adjust != SessionAdjust::kAll) {
+    add_landmark_covariances(joined, options, adjusted);
+    return;
+  }
+  Relaxed relaxed;
+  relaxed.T_map_vehicle = adjusted.T_map_vehicle;
+  relaxed.component = joined.piece;
+  adjusted.stage.problem.priors.clear();  // the gauge of covariances is the first keyframe
+  for (BundlePose& pose : adjusted.stage.problem.poses) pose.fixed = false;
+  add_covariances(joined.input, relaxed, suspected, options, adjusted);
+}
+
+std::string gauge_of(SessionAdjust adjust) {
+  switch (adjust) {
+    case SessionAdjust::kNear:
+      return "poses of the map away from the last session fixed";
+    case SessionAdjust::kAll:
+      return "weak prior on the poses of the first session";
+    case SessionAdjust::kNone:
+      return "all poses and landmarks before the last session fixed";
+  }
+  return {};
 }
 
 Adjusted session_alone(const JoinedSession& joined, const Adjusted& adjusted) {

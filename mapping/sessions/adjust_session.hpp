@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "mapping/pipeline/map_stages.hpp"
@@ -23,6 +24,16 @@ namespace roadbook {
                                       const Map& map,
                                       const MapOptions& options,
                                       const Progress& progress);
+
+/// Adds covariances, if `options` want them: of everything after SessionAdjust::kAll, else of the
+/// landmarks that the session sees or has moved. `suspected`: errors of cameras that widen them.
+void add_covariances_of_session(const JoinedSession& joined,
+                                const std::vector<CommonError>& suspected,
+                                const MapOptions& options,
+                                Adjusted& adjusted);
+
+/// What holds the map where it is, in words for `map_meta`.
+[[nodiscard]] std::string gauge_of(SessionAdjust adjust);
 
 /// The part of an adjustment that belongs to the session: its poses and observations, with indices
 /// as if it were alone.

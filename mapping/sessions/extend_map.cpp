@@ -10,7 +10,6 @@
 #include "mapping/localisation/landmark_index.hpp"
 #include "mapping/pieces.hpp"
 #include "mapping/pipeline/drive_steps.hpp"
-#include "mapping/pipeline/landmark_covariance.hpp"
 #include "mapping/pipeline/map_gate.hpp"
 #include "mapping/pipeline/map_inputs.hpp"
 #include "mapping/pipeline/map_paths.hpp"
@@ -52,19 +51,6 @@ void renew_path(const Map& map, const Drive& drive, const std::filesystem::path&
   update.commit();
 }
 
-// What holds the map where it is, in words for `map_meta`.
-std::string gauge_of(SessionAdjust adjust) {
-  switch (adjust) {
-    case SessionAdjust::kNear:
-      return "poses of the map away from the last session fixed";
-    case SessionAdjust::kAll:
-      return "weak prior on the poses of the first session";
-    case SessionAdjust::kNone:
-      return "all poses and landmarks before the last session fixed";
-  }
-  return {};
-}
-
 void require_place(const PlacedSession& placed,
                    const GateInputs& inputs,
                    const MapOptions& options,
@@ -102,48 +88,6 @@ std::vector<DriveTruth> truths_of(const Map& map,
     }
   }
   return truths;
-}
-
-void add_landmark_covariances(const JoinedSession& joined,
-                              const MapOptions& options,
-                              Adjusted& adjusted) {
-  std::vector<std::size_t> places;
-  std::vector<JoinedTrack> tracks;
-  // Those that the session sees, and those that it moved.
-  const auto has_moved = [&](std::size_t t) {
-    return t >= joined.tracks.size() || adjusted.tracks[t].p_map != joined.tracks[t].p_map;
-  };
-  for (std::size_t t = 0; t < adjusted.tracks.size(); ++t)
-    if (adjusted.tracks[t].p_map && (joined.has_session(adjusted.tracks[t]) || has_moved(t))) {
-      places.push_back(t);
-      tracks.push_back(adjusted.tracks[t]);
-    }
-  const auto found = landmark_covariances(joined.input, adjusted.T_map_vehicle, tracks,
-                                          options.bundle.feature_sigma_px, options.triangulation);
-  adjusted.landmark_covariance.factor = found.factor;
-  adjusted.landmark_covariance.compared = found.compared;
-  adjusted.landmark_covariance.of_track.assign(adjusted.tracks.size(),
-                                               unknown_covariance<Eigen::Matrix3d>());
-  for (std::size_t i = 0; i < places.size(); ++i)
-    adjusted.landmark_covariance.of_track[places[i]] = found.of_track[i];
-}
-
-// Covariances of everything after everything was adjusted; else of what the session saw.
-void add_covariances_of(const JoinedSession& joined,
-                        const std::vector<CommonError>& suspected,
-                        const MapOptions& options,
-                        Adjusted& adjusted) {
-  if (!options.covariances) return;
-  if (options.adjust != SessionAdjust::kAll) {
-    add_landmark_covariances(joined, options, adjusted);
-    return;
-  }
-  Relaxed relaxed;
-  relaxed.T_map_vehicle = adjusted.T_map_vehicle;
-  relaxed.component = joined.piece;
-  adjusted.stage.problem.priors.clear();  // the gauge of covariances is the first keyframe
-  for (BundlePose& pose : adjusted.stage.problem.poses) pose.fixed = false;
-  add_covariances(joined.input, relaxed, suspected, options, adjusted);
 }
 
 void extend_from(const std::vector<Drive>& drives,  // one
@@ -211,7 +155,7 @@ void extend_from(const std::vector<Drive>& drives,  // one
     return common_errors_of(found, input, alone.stage);
   });
   clock.run("covariances", [&] {
-    add_covariances_of(joined, suspects, options, adjusted);
+    add_covariances_of_session(joined, suspects, options, adjusted);
     return 0;
   });
   const Map extended = clock.run("assemble", [&] {

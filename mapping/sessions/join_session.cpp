@@ -133,6 +133,28 @@ std::vector<TrackMatch> matches_in_map_images(const JoinedSession& joined,
   return same;
 }
 
+// Tracks of the drive that show one corner. Where the map stays as it is, tracks with a landmark
+// are left out: two of them may show that two landmarks are one.
+std::vector<TrackMatch> matches_in_drive(const MappingInput& drive,
+                                         const std::vector<TrackMatch>& matches,
+                                         int first_track,
+                                         int first_keyframe,
+                                         const std::vector<bool>* has_landmark) {
+  std::vector<TrackMatch> same;
+  for (TrackMatch match : matches) {
+    const KeyPointId& view = match.view;
+    const int other =
+        drive.odometry.keyframes[at(view.keyframe)].tracks[at(view.camera)][at(view.feature)];
+    if (has_landmark != nullptr &&
+        ((*has_landmark)[at(match.track)] || (other >= 0 && (*has_landmark)[at(other)])))
+      continue;
+    match.track += first_track;
+    match.view.keyframe += first_keyframe;
+    same.push_back(match);
+  }
+  return same;
+}
+
 std::vector<TrackMatch> matches_of_loops(const JoinedSession& joined,
                                          const std::vector<LoopClosure>& loops) {
   std::vector<TrackMatch> same;
@@ -177,7 +199,8 @@ std::vector<int> landmarks_of_tracks(const Map& map, const std::vector<JoinedTra
 JoinedSession join_session(const Map& map,
                            const MappingInput& drive,
                            const PlacedSession& placed,
-                           const MapOptions& options) {
+                           const MapOptions& options,
+                           const std::vector<TrackMatch>& same_in_drive) {
   StoredInput stored = stored_input(map);
   std::vector<int> track_of_landmark(map.landmarks.size(), -1);
   for (std::size_t t = stored.landmark_of_track.size(); t-- > 0;)
@@ -196,6 +219,8 @@ JoinedSession join_session(const Map& map,
   std::vector<bool> has_landmark;
   add(matches_of_localisation(drive, placed, track_of_landmark,
                               static_cast<int>(joined.first_keyframe), has_landmark));
+  add(matches_in_drive(drive, same_in_drive, first_track, static_cast<int>(joined.first_keyframe),
+                       options.adjust == SessionAdjust::kNone ? &has_landmark : nullptr));
   // These may show that two landmarks are one, which a map that stays as it is cannot take up.
   if (options.adjust != SessionAdjust::kNone) {
     add(matches_in_map_images(joined, first_track, has_landmark, options));

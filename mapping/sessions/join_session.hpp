@@ -23,11 +23,13 @@ struct JoinedSession {
 /// Joins the stored observations of `map` with the tracks of `drive` (one session). A track of the
 /// drive joins the landmark that most of its key points were localised with. Tracks without one are
 /// searched in the nearest images of the map, whose corners without a landmark are stored. Tracks
-/// with a view of the session are triangulated again. Deterministic on any number of threads.
+/// with a view of the session are triangulated again. `same_in_drive`: tracks of the drive that
+/// show one corner, by its own keyframes and tracks. Deterministic on any number of threads.
 [[nodiscard]] JoinedSession join_session(const Map& map,
                                          const MappingInput& drive,
                                          const PlacedSession& placed,
-                                         const MapOptions& options);
+                                         const MapOptions& options,
+                                         const std::vector<TrackMatch>& same_in_drive = {});
 
 /// Index of the landmark of `map` to which a track of `joined` belongs; -1: none.
 [[nodiscard]] std::vector<int> landmarks_of_tracks(const Map& map,

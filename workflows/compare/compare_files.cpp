@@ -5,6 +5,7 @@
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_reading.hpp"
 #include "semantics/labels/label_store.hpp"
+#include "workflows/session_worth.hpp"
 #include "workflows/stored_network.hpp"
 
 namespace roadbook {
@@ -107,21 +108,28 @@ LaneComparison compare_lanes(const std::vector<std::vector<Eigen::Vector3d>>& a,
   return comparison;
 }
 
-FileComparison compare_files(const std::filesystem::path& a, const std::filesystem::path& b) {
+FileComparison compare_files(const std::filesystem::path& a,
+                             const std::filesystem::path& b,
+                             bool with_value) {
   const MapReading reading_a(a);
   const MapReading reading_b(b);
   FileComparison comparison;
   comparison.a = load_map(a);
-  const Map map_b = load_map(b);
+  comparison.b = load_map(b);
   const MapLayers layers_a(a);
   const MapLayers layers_b(b);
-  comparison.maps = compare_maps(comparison.a, map_b);
+  comparison.maps = compare_maps(comparison.a, comparison.b);
   const auto& T_a_b = comparison.maps.T_a_b;
-  comparison.labels = compare_labels(comparison.a, read_labels(a), map_b, read_labels(b), T_a_b);
+  const std::vector<Label> labels_a = read_labels(a);
+  const std::vector<Label> labels_b = read_labels(b);
+  comparison.labels = compare_labels(comparison.a, labels_a, comparison.b, labels_b, T_a_b);
   comparison.lanes = compare_lanes(centres(layers_a), centres(layers_b), T_a_b);
   comparison.layers = compare_layers(layers_a, layers_b);
   reading_a.require_same_map();
   reading_b.require_same_map();
+  if (!with_value) return comparison;
+  comparison.value_a = worth_of_sessions(comparison.a, labels_a);
+  comparison.value_b = worth_of_sessions(comparison.b, labels_b);
   return comparison;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mapping/sessions/session_value.hpp"
 #include "semantics/labels/labels.hpp"
 #include "workflows/compare/lane_overlap.hpp"
 #include "workflows/compare/map_comparison.hpp"
@@ -43,10 +44,14 @@ struct LayerComparison {
 /// The comparison of two map files with all that is drawn on them.
 struct FileComparison {
   Map a;
+  Map b;
   MapComparison maps;
   LabelComparison labels;
   LaneComparison lanes;
   LayerComparison layers;
+  /// Of A's sessions for each other; empty if it was not requested, and for one session.
+  std::vector<SessionValue> value_a;
+  std::vector<SessionValue> value_b;
 };
 
 [[nodiscard]] LabelComparison compare_labels(const Map& map_a,
@@ -60,9 +65,11 @@ struct FileComparison {
                                            const std::vector<std::vector<Eigen::Vector3d>>& b,
                                            const std::optional<Eigen::Isometry3d>& T_a_b);
 
-/// Reads and compares two map files. Throws BadInput for a file that is no map or damaged,
-/// StorageError if a file cannot be read or is replaced meanwhile.
+/// Reads and compares two map files. `with_value`: also computes what the sessions of each map are
+/// worth to each other, which takes longer than everything else. Throws BadInput for a file that is
+/// no map or damaged, StorageError if a file cannot be read or is replaced meanwhile.
 [[nodiscard]] FileComparison compare_files(const std::filesystem::path& a,
-                                           const std::filesystem::path& b);
+                                           const std::filesystem::path& b,
+                                           bool with_value = false);
 
 }  // namespace roadbook

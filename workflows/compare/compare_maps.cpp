@@ -117,13 +117,24 @@ double sigma_along(const Eigen::Vector3d& difference, const Eigen::Matrix3d& cov
   return square > 0.0 ? std::sqrt(difference.dot(covariance * difference) / square) : 0.0;
 }
 
+std::vector<int> unmarked(const std::vector<char>& marks) {
+  std::vector<int> list;
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    if (marks[i] == 0) list.push_back(static_cast<int>(i));
+  return list;
+}
+
 void compare_landmarks(const Map& a, const Map& b, const std::vector<int>& same, MapComparison& c) {
   std::set<int> joined;  // keyframes of A whose places can be compared
   for (const ComparedPose& pose : c.poses) joined.insert(pose.a);
   LandmarkComparison& counts = c.landmarks;
+  std::vector<char> in_both_a(a.landmarks.size(), 0);
+  std::vector<char> in_both_b(b.landmarks.size(), 0);
   std::vector<double> distances;
   for (const LandmarkMatch& match : landmark_matches(a, b, same)) {
     ++counts.both;
+    in_both_a[static_cast<std::size_t>(match.a)] = 1;
+    in_both_b[static_cast<std::size_t>(match.b)] = 1;
     if (!joined.contains(match.keyframe)) continue;
     ++counts.compared;
     const Landmark& in_a = a.landmarks[static_cast<std::size_t>(match.a)];
@@ -134,9 +145,12 @@ void compare_landmarks(const Map& a, const Map& b, const std::vector<int>& same,
     ++counts.judged;
     const Eigen::Matrix3d R = c.T_a_b->linear();
     const Eigen::Matrix3d covariance = in_a.covariance + R * in_b.covariance * R.transpose();
-    if (difference.norm() > kStillSigmas * sigma_along(difference, covariance) + kStillM)
-      ++counts.moved;
+    if (difference.norm() <= kStillSigmas * sigma_along(difference, covariance) + kStillM) continue;
+    ++counts.moved;
+    counts.moved_ids.emplace_back(match.a, match.b);
   }
+  counts.ids_only_a = unmarked(in_both_a);
+  counts.ids_only_b = unmarked(in_both_b);
   counts.only_a = a.landmarks.size() - counts.both;
   counts.only_b = b.landmarks.size() - counts.both;
   if (!distances.empty()) counts.median_m = median(distances);

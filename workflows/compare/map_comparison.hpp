@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mapping/map.hpp"
@@ -35,7 +36,10 @@ struct LandmarkComparison : CommonCounts {
   std::size_t judged = 0;    ///< of `compared`: both covariances are known
   /// Of `judged`: apart by more than 3 sigma + 5 cm, sigma along the line between both positions.
   std::size_t moved = 0;
-  std::optional<double> median_m;  ///< over `compared`
+  std::optional<double> median_m;              ///< over `compared`
+  std::vector<int> ids_only_a;                 ///< in A, ascending
+  std::vector<int> ids_only_b;                 ///< in B, ascending
+  std::vector<std::pair<int, int>> moved_ids;  ///< in A and in B
 };
 
 struct MapComparison {

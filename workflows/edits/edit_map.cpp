@@ -19,18 +19,6 @@
 namespace roadbook {
 namespace {
 
-// Layers and tables that do not depend on where the poses are, and those that this command writes.
-bool stays(const std::string& name) {
-  static const std::set<std::string> tables = [] {
-    std::set<std::string> names{"poses",      "landmark_points", kEditTable,
-                                kBeforeTable, "label_classes",   "layer_styles"};
-    names.insert(measured_tables().begin(), measured_tables().end());
-    names.insert(learning_tables().begin(), learning_tables().end());
-    return names;
-  }();
-  return tables.contains(name) || is_label_layer(name) || name.ends_with("_events");
-}
-
 bool has_moved(const Map& before, const Map& after) {
   for (std::size_t k = 0; k < before.keyframes.size(); ++k)
     if (before.T_map_vehicle(static_cast<int>(k)).matrix() !=
@@ -54,7 +42,7 @@ void store_edited(const std::filesystem::path& file,
     update.set_meta(kPiecesKey, std::to_string(piece_count(edited)));
   if (has_moved(now, edited)) {
     for (const std::string& name : layer_names(file))
-      if (!stays(name) && update.remove(name)) result.dropped.push_back(name);
+      if (!stays_when_poses_move(name) && update.remove(name)) result.dropped.push_back(name);
     write_label_layers(update, layers, edited, labels);
   }
   update.commit();
@@ -94,6 +82,17 @@ Map edited_by(const EditRequest& request,
 }
 
 }  // namespace
+
+bool stays_when_poses_move(const std::string& table) {
+  static const std::set<std::string> tables = [] {
+    std::set<std::string> names{"poses",      "landmark_points", kEditTable,
+                                kBeforeTable, "label_classes",   "layer_styles"};
+    names.insert(measured_tables().begin(), measured_tables().end());
+    names.insert(learning_tables().begin(), learning_tables().end());
+    return names;
+  }();
+  return tables.contains(table) || is_label_layer(table) || table.ends_with("_events");
+}
 
 EditResult edit_map(const EditRequest& request, Messages& messages) {
   const MapHold hold(request.map);

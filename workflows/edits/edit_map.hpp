@@ -26,6 +26,9 @@ struct EditResult {
   std::string digest;                ///< of the map
 };
 
+/// Whether a layer or table of a map does not depend on where the poses are, or follows them.
+[[nodiscard]] bool stays_when_poses_move(const std::string& table);
+
 /// Adds edits to a map, or takes one back, or lists them. The map is computed from the map without
 /// edits and all its edits, so that taking the last one back restores the map of before, to the
 /// digest. A map that was extended after its edits knows no map without them: a taken-back edit

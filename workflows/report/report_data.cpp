@@ -4,9 +4,11 @@
 
 #include "drive/drive.hpp"
 #include "mapping/store/map_reading.hpp"
+#include "semantics/labels/label_store.hpp"
 #include "workflows/drive_images.hpp"
 #include "workflows/driven_passes.hpp"
 #include "workflows/session_drives.hpp"
+#include "workflows/session_worth.hpp"
 #include "workflows/stored_network.hpp"
 
 namespace roadbook {
@@ -60,7 +62,9 @@ ReportData collect_report(const std::filesystem::path& map_file,
   const auto drives = look_again ? drives_of(data) : std::vector<std::optional<Drive>>();
   const auto images = look_again ? images_of_drives(&data.map, &drives) : KeyframeImages();
   data.labels = collect_labels(map_file, data.map, before, images);
+  const std::vector<Label> labels = read_labels(map_file);
   reading.require_same_map();
+  data.value = worth_of_sessions(data.map, labels);
   if (data.network)
     (void)build_road_network(driven_passes(data.map), {}, nullptr, &data.stages_of_network);
   return data;

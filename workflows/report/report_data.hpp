@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mapping/map.hpp"
+#include "mapping/sessions/session_value.hpp"
 #include "mapping/store/map_file.hpp"
 #include "roadnet/build_network.hpp"
 #include "workflows/report/ground_picture.hpp"
@@ -37,6 +38,7 @@ struct ReportData {
   RoadNetworkStages stages_of_network;  ///< recomputed for the pictures
   std::optional<SpeedReport> speeds;    ///< empty if the map has neither speeds nor friction
   std::optional<LabelReport> labels;    ///< empty if the map has no labels
+  std::vector<SessionValue> value;      ///< of its sessions for each other; empty for one session
 };
 
 /// Collects the data of the report. Throws BadInput for a map that cannot be used. If a drive is

@@ -45,6 +45,45 @@ TEST(CompareVerb, TellsWhatDiffersAndWhere) {
       << lines.out;
 }
 
+// The page needs no other file and no network; it has the numbers and marks the worst place.
+TEST(CompareVerb, WritesOnePageWithBothMapsFromAbove) {
+  const test::ScratchFolder folder;
+  write_two_maps(folder.path());
+  const auto run = run_command("roadbook compare a.gpkg b.gpkg -o page.html --json", folder.path());
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json.at("page"), "page.html");
+  EXPECT_TRUE(json.at("value").is_null());
+  const std::string page = test::read_text(folder.path() / "page.html");
+  for (const char* part : {"A: a.gpkg, B: b.gpkg", "class=\"track map-a\"", "class=\"track map-b\"",
+                           "class=\"dot worst\"", "worst: 2", "drive 1</td><td>only in A"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  EXPECT_NE(page.find(">" + std::to_string(json.at("landmarks").at("moved").get<int>()) + " / "),
+            std::string::npos);
+  for (const char* part : {"http:", "https:", "<script", "src=", "@import"})
+    EXPECT_EQ(page.find(part), std::string::npos) << part;
+  // A map is not overwritten by the page about it.
+  const auto refused = run_command("roadbook compare a.gpkg b.gpkg -o b.gpkg", folder.path());
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+}
+
+TEST(CompareVerb, TellsTheValueOfSessionsOnRequest) {
+  const test::ScratchFolder folder;
+  write_two_maps(folder.path());
+  const auto run =
+      run_command("roadbook compare a.gpkg b.gpkg --value -o page.html --json", folder.path());
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto value = nlohmann::json::parse(run.out).at("value");
+  for (const char* map : {"a", "b"}) {
+    ASSERT_EQ(value.at(map).size(), 2U);
+    EXPECT_EQ(value.at(map)[0].at("session"), "drive 0");
+    EXPECT_EQ(value.at(map)[0].at("poses").at("count"), 40);
+  }
+  EXPECT_NE(test::read_text(folder.path() / "page.html").find("is worth to the others"),
+            std::string::npos);
+}
+
 TEST(CompareVerb, MapsWithoutCommonPosesHaveNoNumbers) {
   const test::ScratchFolder folder;
   Map map = test::small_map(1);

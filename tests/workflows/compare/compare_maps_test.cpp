@@ -126,6 +126,9 @@ TEST(CompareMaps, CountsLandmarksThatAreGoneNewMovedOrNotKnown) {
   EXPECT_EQ(c.landmarks.compared, 23U);
   EXPECT_EQ(c.landmarks.judged, 22U);
   EXPECT_EQ(c.landmarks.moved, 1U);
+  EXPECT_EQ(c.landmarks.ids_only_a, std::vector<int>{0});
+  EXPECT_EQ(c.landmarks.ids_only_b, (std::vector<int>{0, 24}));
+  EXPECT_EQ(c.landmarks.moved_ids, (std::vector<std::pair<int, int>>{{5, 5}}));
 }
 
 TEST(CompareMaps, ALandmarkBelongsToTheOneItSharesMostViewsWith) {
