@@ -6,6 +6,7 @@
 #include "apps/report/html.hpp"
 #include "apps/report/label_section.hpp"
 #include "apps/report/network_section.hpp"
+#include "apps/report/occupancy_section.hpp"
 #include "apps/report/page_style.hpp"
 #include "apps/report/quality_section.hpp"
 #include "apps/report/speed_section.hpp"
@@ -214,9 +215,9 @@ std::string report_page(const ReportData& data,
          "</style></head><body><main>\n<header><p>roadbook report</p><h1>" + escaped(title) +
          "</h1></header>\n" + headline(data) + overview(data) + overhead(data) +
          network_section(data) + (data.labels ? label_section(*data.labels, rounds) : "") +
-         speeds(data) + experiments(evaluation) + quality_section(data) + sessions(data) +
-         loops_section(data) + run_times(data) + warnings(data) + provenance(data) +
-         "</main></body></html>\n";
+         occupancy_section(data) + speeds(data) + experiments(evaluation) + quality_section(data) +
+         sessions(data) + loops_section(data) + run_times(data) + warnings(data) +
+         provenance(data) + "</main></body></html>\n";
 }
 
 }  // namespace roadbook

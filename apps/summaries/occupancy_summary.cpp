@@ -18,8 +18,25 @@ double scan_ms(const OccupancyOfDrive& d) {
   return 1e3 * d.seconds / std::max(1.0, static_cast<double>(d.drive.scans));
 }
 
+std::string reading_name(const OccupancyDrive& d) {
+  return d.sensor == "cameras" ? "keyframe" : "scan";
+}
+
 Json drive_json(const OccupancyOfDrive& d) {
+  if (d.drive.sensor == "cameras")
+    return {{"drive", d.drive.drive},
+            {"sensor", d.drive.sensor},
+            {"keyframes", d.drive.scans},
+            {"landmarks_on_ground", d.on_ground},
+            {"landmarks_raised", d.raised},
+            {"patches", d.patches},
+            {"updates", d.updates},
+            {"ms_a_scan", scan_ms(d)},
+            {"sights_raised", d.drive.sights_raised},
+            {"sights_raised_free", d.drive.sights_raised_free},
+            {"temper", d.drive.temper}};
   return {{"drive", d.drive.drive},
+          {"sensor", d.drive.sensor},
           {"localised", d.drive.localised},
           {"scans", d.drive.scans},
           {"scans_without_pose", d.without_pose},
@@ -36,9 +53,17 @@ Json drive_json(const OccupancyOfDrive& d) {
 void say_drive(const Console& console, const OccupancyOfDrive& d) {
   const RangeMixture& m = d.drive.mixture;
   console.say(
-      d.drive.drive + ": " + std::to_string(d.drive.scans) + " scans in " +
+      d.drive.drive + ": " + std::to_string(d.drive.scans) + " " + reading_name(d.drive) + "s in " +
       std::to_string(d.patches) + " patches" + (d.drive.localised ? ", localised in the map" : "") +
       (d.without_pose > 0 ? "; " + std::to_string(d.without_pose) + " without a pose" : ""));
+  if (d.drive.sensor == "cameras") {
+    console.say(d.drive.drive + ": " + std::to_string(d.on_ground) + " landmarks on the ground, " +
+                std::to_string(d.raised) + " raised; raised ones are " +
+                percent_of(d.drive.sights_raised) + " of the sights of an occupied cell, " +
+                percent_of(d.drive.sights_raised_free, 2) +
+                " of a free one; a further sight of a cell counts as " + fixed(d.drive.temper, 3));
+    return;
+  }
   console.say(d.drive.drive + ": beam model (" + d.drive.model + "): hits " + percent_of(m.hit()) +
               " with " + fixed(100.0 * m.sigma_m, 1) + " cm, short " + percent_of(m.share[kShort]) +
               ", maximum " + percent_of(m.share[kMaximum]) + ", crosstalk " +
@@ -50,37 +75,43 @@ void say_drive(const Console& console, const OccupancyOfDrive& d) {
 Json demands_json(const OccupancyResult& r) {
   double ms = 0.0;
   for (const OccupancyOfDrive& d : r.drives) ms = std::max(ms, scan_ms(d));
-  const auto cells = static_cast<double>(std::max<std::size_t>(r.figures.cells, 1));
-  Json demands{{"complete", 1.0 - static_cast<double>(r.figures.undecided) / cells},
-               {"bytes_per_m2", r.figures.bytes_per_m2},
+  const OccupancyDemands& one = r.demands;
+  Json demands{{"complete", 1.0 - one.undecided_share()},
+               {"bytes_per_m2", one.figures.bytes_per_m2},
+               {"updates_a_scan", one.updates_a_scan()},
                {"ms_a_scan", r.drives.empty() ? Json(nullptr) : Json(ms)},
                {"core_at_10_hz", r.drives.empty() ? Json(nullptr) : Json(ms / 100.0)},
-               {"merged_share", r.figures.merged_share},
-               {"free_share", static_cast<double>(r.figures.free) / cells},
-               {"vanished_share", r.figures.vanished_share}};
-  demands["uncertainty"] = r.truth ? Json(r.truth->calibration_error) : Json(nullptr);
+               {"merged_share", one.figures.merged_share},
+               {"free_share", one.free_share()},
+               {"vanished_share", one.figures.vanished_share},
+               {"driven_cells", one.driven.cells},
+               {"driven_seen", one.driven.seen},
+               {"driven_free", one.driven.free},
+               {"driven_occupied", one.driven.occupied}};
+  demands["trails"] = one.trails ? Json(one.trails->called_occupied) : Json(nullptr);
+  demands["uncertainty"] = one.truth ? Json(one.truth->calibration_error) : Json(nullptr);
   return demands;
 }
 
 void say_demands(const Console& console, const OccupancyResult& r) {
-  const auto cells = static_cast<double>(std::max<std::size_t>(r.figures.cells, 1));
-  console.say("complete: " + std::to_string(r.figures.cells) + " cells seen, " +
-              percent_of(static_cast<double>(r.figures.undecided) / cells) + " undecided");
-  console.say("compact: " + fixed(r.figures.bytes_per_m2, 0) + " bytes a square metre");
+  const OccupancyDemands& one = r.demands;
+  console.say("complete: " + std::to_string(one.figures.cells) + " cells seen, " +
+              percent_of(one.undecided_share()) + " undecided");
+  console.say("compact: " + fixed(one.figures.bytes_per_m2, 0) + " bytes a square metre");
   for (const OccupancyOfDrive& d : r.drives)
-    console.say("real time: " + fixed(scan_ms(d), 3) + " ms a scan, " +
+    console.say("real time: " + fixed(scan_ms(d), 3) + " ms a " + reading_name(d.drive) + ", " +
                 percent_of(scan_ms(d) / 100.0, 2) + " of a core at 10 Hz");
-  console.say("detail: " + percent_of(r.figures.merged_share) +
+  console.say("detail: " + percent_of(one.figures.merged_share) +
               " of the cells are left after merging equal neighbours");
-  console.say(
-      "free space: " + percent_of(static_cast<double>(r.figures.free) / cells) + " of the cells" +
-      (r.truth ? "; recall " + percent_of(r.truth->free_recall, 2) + ", occupied called free " +
-                     percent_of(r.truth->occupied_called_free, 2)
-               : ""));
-  console.say("moving things: " + percent_of(r.figures.vanished_share, 2) +
+  console.say("free space: " + percent_of(one.free_share()) + " of the cells" +
+              (one.truth
+                   ? "; recall " + percent_of(one.truth->free_recall, 2) +
+                         ", occupied called free " + percent_of(one.truth->occupied_called_free, 2)
+                   : ""));
+  console.say("moving things: " + percent_of(one.figures.vanished_share, 2) +
               " of the free cells had echoes of something that left");
   console.say(std::string("uncertainty: calibration error ") +
-              (r.truth ? fixed(r.truth->calibration_error, 4) : "unknown without truth"));
+              (one.truth ? fixed(one.truth->calibration_error, 4) : "unknown without truth"));
 }
 
 }  // namespace
@@ -133,23 +164,24 @@ void print_occupancy(const Console& console, const OccupancyResult& result) {
     console.note(std::to_string(result.grid.without_pose) +
                  " patches belong to poses that the map no longer has; they are left out");
   say_demands(console, result);
-  Json json{
-      {"scans", scans},
-      {"cells", result.figures.cells},
-      {"free", result.figures.free},
-      {"occupied", result.figures.occupied},
-      {"undecided", result.figures.undecided},
-      {"updates", updates},
-      {"updates_per_second",
-       seconds > 0.0 ? Json(static_cast<double>(updates) / seconds) : Json(nullptr)},
-      {"patches", result.stored.patches.size()},
-      {"patches_moved", result.grid.moved},
-      {"patches_without_pose", result.grid.without_pose},
-      {"prior", 1.0 / (1.0 + std::exp(-result.stored.prior_log_odds()))},
-      {"calibration_error", result.truth ? Json(result.truth->calibration_error) : Json(nullptr)},
-      {"demands", demands_json(result)},
-      {"drives", drives}};
-  if (result.truth) json["truth"] = to_json(*result.truth);
+  const OccupancyFigures& figures = result.demands.figures;
+  const auto& truth = result.demands.truth;
+  Json json{{"scans", scans},
+            {"cells", figures.cells},
+            {"free", figures.free},
+            {"occupied", figures.occupied},
+            {"undecided", figures.undecided},
+            {"updates", updates},
+            {"updates_per_second",
+             seconds > 0.0 ? Json(static_cast<double>(updates) / seconds) : Json(nullptr)},
+            {"patches", result.stored.patches.size()},
+            {"patches_moved", result.grid.moved},
+            {"patches_without_pose", result.grid.without_pose},
+            {"prior", 1.0 / (1.0 + std::exp(-result.stored.prior_log_odds()))},
+            {"calibration_error", truth ? Json(truth->calibration_error) : Json(nullptr)},
+            {"demands", demands_json(result)},
+            {"drives", drives}};
+  if (truth) json["truth"] = to_json(*truth);
   console.result(json);
 }
 

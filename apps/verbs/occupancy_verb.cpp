@@ -8,12 +8,17 @@ namespace roadbook {
 Verb occupancy_verb() {
   auto command = std::make_shared<OccupancyRequest>();
   auto update = std::make_shared<std::string>("log-odds");
+  auto sensor = std::make_shared<std::string>("range0");
   auto temper = std::make_shared<std::string>("auto");
-  return {"occupancy", "updates the occupancy grid of a map from a range scanner",
+  return {"occupancy", "updates the occupancy grid of a map from a range scanner or cameras",
           [=](Options& options) {
             options.add("DRIVE", &command->drives,
-                        "drives with range0; none: places the stored patches again");
+                        "drives of the sensor; none: places the stored patches again");
             options.add("--map,-m", &command->map, "map file").required = true;
+            options
+                .add("--sensor", sensor.get(),
+                     "range scanner, or landmarks of the map that the cameras of its sessions saw")
+                .choices = {"range0", "cameras"};
             options
                 .add("--update", update.get(),
                      "rule for a cell: log odds, the same as a ratio, or a naive demonstration")
@@ -34,6 +39,8 @@ Verb occupancy_verb() {
           },
           [=](Console& console, const CommonOptions& common) {
             command->update = *occupancy_update(*update);
+            command->sensor =
+                *sensor == "cameras" ? OccupancySensor::kCameras : OccupancySensor::kRange;
             command->temper = temper_option(*temper);
             command->num_threads = common.threads;
             print_occupancy(console, make_occupancy(*command, console));

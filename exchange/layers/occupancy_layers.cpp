@@ -51,17 +51,31 @@ PlainTable patch_table(const std::vector<OccupancyPatch>& patches) {
 PlainTable settings_of(const StoredOccupancy& stored) {
   PlainTable table;
   table.name = "occupancy_settings";
-  table.fields = {{"drive", FieldType::kText},        {"drive_digest", FieldType::kText},
-                  {"sensor", FieldType::kText},       {"model", FieldType::kText},
-                  {"localised", FieldType::kInteger}, {"begin_ns", FieldType::kInteger},
-                  {"end_ns", FieldType::kInteger},    {"scans", FieldType::kInteger},
-                  {"max_m", FieldType::kReal},        {"cone_rad", FieldType::kReal},
-                  {"temper", FieldType::kReal},       {"hit", FieldType::kReal},
-                  {"short", FieldType::kReal},        {"maximum", FieldType::kReal},
-                  {"crosstalk", FieldType::kReal},    {"sigma_m", FieldType::kReal},
-                  {"wide", FieldType::kReal},         {"short_rate_per_m", FieldType::kReal},
-                  {"cell_m", FieldType::kReal},       {"surfaces_per_m", FieldType::kReal},
-                  {"prior", FieldType::kReal},        {"updating", FieldType::kText}};
+  table.fields = {{"drive", FieldType::kText},
+                  {"drive_digest", FieldType::kText},
+                  {"sensor", FieldType::kText},
+                  {"model", FieldType::kText},
+                  {"localised", FieldType::kInteger},
+                  {"begin_ns", FieldType::kInteger},
+                  {"end_ns", FieldType::kInteger},
+                  {"scans", FieldType::kInteger},
+                  {"max_m", FieldType::kReal},
+                  {"cone_rad", FieldType::kReal},
+                  {"temper", FieldType::kReal},
+                  {"hit", FieldType::kReal},
+                  {"short", FieldType::kReal},
+                  {"maximum", FieldType::kReal},
+                  {"crosstalk", FieldType::kReal},
+                  {"sigma_m", FieldType::kReal},
+                  {"wide", FieldType::kReal},
+                  {"short_rate_per_m", FieldType::kReal},
+                  {"cell_m", FieldType::kReal},
+                  {"surfaces_per_m", FieldType::kReal},
+                  {"prior", FieldType::kReal},
+                  {"updating", FieldType::kText},
+                  {"updates", FieldType::kReal},
+                  {"sights_raised", FieldType::kReal},
+                  {"sights_raised_free", FieldType::kReal}};
   for (const OccupancyDrive& d : stored.drives) {
     const RangeMixture& m = d.mixture;
     table.rows.push_back({d.drive,
@@ -85,7 +99,10 @@ PlainTable settings_of(const StoredOccupancy& stored) {
                           stored.cell_m,
                           stored.surfaces_per_m,
                           stored.prior,
-                          std::string(to_text(stored.update))});
+                          std::string(to_text(stored.update)),
+                          static_cast<double>(d.updates),
+                          finite_or_null(d.sights_raised),
+                          finite_or_null(d.sights_raised_free)});
   }
   return table;
 }
@@ -147,6 +164,10 @@ OccupancyDrive drive_from(const TableRow& row) {
   d.max_m = row.get<double>("max_m");
   d.cone_rad = row.get<double>("cone_rad");
   d.temper = row.get<double>("temper");
+  // Grids of earlier versions do not have these three.
+  d.updates = static_cast<std::int64_t>(row.number("updates", 0.0));
+  d.sights_raised = row.number("sights_raised", NAN);
+  d.sights_raised_free = row.number("sights_raised_free", NAN);
   d.mixture.share = {row.get<double>("short"), row.get<double>("maximum"),
                      row.get<double>("crosstalk"), 0.0};
   d.mixture.sigma_m = row.get<double>("sigma_m");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,7 +26,11 @@ struct OccupancyDrive {
   double max_m = 0.0;
   double cone_rad = 0.0;
   double temper = 1.0;
-  RangeMixture mixture;
+  RangeMixture mixture;        ///< of a scanner
+  std::int64_t updates = 0;    ///< changes of cells
+  double sights_raised = NAN;  ///< cameras: share of raised landmarks in the sights of an occupied
+                               ///< cell; NaN for a scanner
+  double sights_raised_free = NAN;  ///< and in those of a free cell
 };
 
 /// The occupancy grid as stored: patches, and how they were made.

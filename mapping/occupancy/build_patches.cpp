@@ -156,8 +156,15 @@ std::size_t fill_grid(PatchGrid& grid,
   return updates + add_scans(grid, scans, &known, inverse, options);
 }
 
-// The part of the grid that readings changed.
-OccupancyPatch cropped(const PatchGrid& grid) {
+}  // namespace
+
+void BuildPatchesOptions::check() const {
+  require_option(cell_m >= 0.01 && cell_m <= 2.0, "cell_m", cell_m, "0.01 to 2");
+  require_option(patch_m >= 0.1 && patch_m <= 500.0, "patch_m", patch_m, "0.1 to 500");
+  require_option(cone_rad >= 0.0 && cone_rad <= 1.6, "cone_rad", cone_rad, "0 to 1.6");
+}
+
+OccupancyPatch cropped_patch(const PatchGrid& grid) {
   int low_c = grid.columns, low_r = grid.rows, high_c = -1, high_r = -1;
   for (int r = 0; r < grid.rows; ++r)
     for (int c = 0; c < grid.columns; ++c) {
@@ -187,12 +194,11 @@ OccupancyPatch cropped(const PatchGrid& grid) {
   return patch;
 }
 
-}  // namespace
-
-void BuildPatchesOptions::check() const {
-  require_option(cell_m >= 0.01 && cell_m <= 2.0, "cell_m", cell_m, "0.01 to 2");
-  require_option(patch_m >= 0.1 && patch_m <= 500.0, "patch_m", patch_m, "0.1 to 500");
-  require_option(cone_rad >= 0.0 && cone_rad <= 1.6, "cone_rad", cone_rad, "0 to 1.6");
+void hang_on(const PatchAnchor& anchor, OccupancyPatch& patch) {
+  patch.session = anchor.session;
+  patch.t_ns = anchor.t_ns;
+  patch.vehicle_patch = plane_pose(
+      Eigen::Isometry2d(anchor.map_vehicle.isometry().inverse() * patch.placed.isometry()));
 }
 
 BuiltPatches build_patches(std::span<const RangeScan> scans,
@@ -211,15 +217,11 @@ BuiltPatches build_patches(std::span<const RangeScan> scans,
     PatchGrid grid(shape_of(own, inverse, options));
     updates[g] = fill_grid(grid, own, inverse, options);
     OccupancyPatch& patch = patches[g];
-    patch = cropped(grid);
-    const PatchAnchor& anchor = anchors[anchor_of[first + (last - first) / 2]];
-    patch.session = anchor.session;
-    patch.t_ns = anchor.t_ns;
+    patch = cropped_patch(grid);
+    hang_on(anchors[anchor_of[first + (last - first) / 2]], patch);
     patch.drive = drive;
     patch.begin_ns = own.front().t_ns;
     patch.end_ns = own.back().t_ns;
-    patch.vehicle_patch = plane_pose(
-        Eigen::Isometry2d(anchor.map_vehicle.isometry().inverse() * patch.placed.isometry()));
   });
   BuiltPatches built;
   for (const std::size_t u : updates) built.updates += u;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mapping/occupancy/occupancy_patch.hpp"
+#include "mapping/occupancy/patch_grid.hpp"
 #include "mapping/occupancy/scans.hpp"
 #include "sensors/range/inverse_range.hpp"
 
@@ -36,6 +37,12 @@ struct BuiltPatches {
   std::vector<OccupancyPatch> patches;
   std::size_t updates = 0;  ///< changes of cells
 };
+
+/// The part of a grid that readings changed, as a patch of the map's frame without a pose; without
+/// cells if nothing changed.
+[[nodiscard]] OccupancyPatch cropped_patch(const PatchGrid& grid);
+/// Stores a patch relative to the pose of a keyframe.
+void hang_on(const PatchAnchor& anchor, OccupancyPatch& patch);
 
 /// The readings of a drive as patches. Scans are grouped along the way; each group belongs to
 /// the anchor of its middle scan. `anchor_of[i]`: index in `anchors` of the anchor nearest to scan

@@ -93,11 +93,11 @@ TEST(MakeOccupancy, AGridOfASimulatedDriveAgreesWithItsTruth) {
   EXPECT_NEAR(drive.drive.mixture.share[kMaximum], 0.03, 0.02);
   EXPECT_GT(drive.drive.temper, 0.0);
   EXPECT_LE(drive.drive.temper, 1.0);
-  ASSERT_TRUE(result.truth);
-  EXPECT_LT(result.truth->calibration_error, 0.03);
-  EXPECT_GT(result.truth->free_recall, 0.95);
-  EXPECT_LT(result.truth->occupied_called_free, 0.05);
-  EXPECT_GT(result.truth->occupied_recall, 0.7);
+  ASSERT_TRUE(result.demands.truth);
+  EXPECT_LT(result.demands.truth->calibration_error, 0.03);
+  EXPECT_GT(result.demands.truth->free_recall, 0.95);
+  EXPECT_LT(result.demands.truth->occupied_called_free, 0.05);
+  EXPECT_GT(result.demands.truth->occupied_recall, 0.7);
   const auto read = read_occupancy_layers(MapLayers(place.map));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->patches.size(), drive.patches);

@@ -1,6 +1,7 @@
 #include "workflows/occupancy/drive_poses.hpp"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "mapping/session_track.hpp"
@@ -90,6 +91,21 @@ std::vector<PatchAnchor> patch_anchors(const Map& map) {
                        plane_pose(map.T_map_vehicle(static_cast<int>(k)))});
   }
   return anchors;
+}
+
+PoseOfKeyframe keyframe_poses(const Map& map) {
+  std::map<std::pair<std::string, std::int64_t>, PlanePose> poses;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const Keyframe& keyframe = map.keyframes[k];
+    const auto& name = map.sessions[static_cast<std::size_t>(keyframe.session)].name;
+    poses[{name, keyframe.t_ns}] = plane_pose(map.T_map_vehicle(static_cast<int>(k)));
+  }
+  return [poses = std::move(poses)](const std::string& session,
+                                    std::int64_t t_ns) -> std::optional<PlanePose> {
+    const auto found = poses.find({session, t_ns});
+    if (found == poses.end()) return std::nullopt;
+    return found->second;
+  };
 }
 
 }  // namespace roadbook

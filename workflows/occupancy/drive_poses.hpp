@@ -7,6 +7,7 @@
 #include "drive/drive.hpp"
 #include "mapping/map.hpp"
 #include "mapping/occupancy/build_patches.hpp"
+#include "mapping/occupancy/place_patches.hpp"
 #include "workflows/occupancy/drive_scans.hpp"
 
 namespace roadbook {
@@ -31,6 +32,9 @@ struct DrivePoses {
                                      const std::filesystem::path& map_file,
                                      int num_threads,
                                      Messages& messages);
+
+/// T_map_vehicle in the plane for keyframes of a map, by session name and stamp.
+[[nodiscard]] PoseOfKeyframe keyframe_poses(const Map& map);
 
 /// All keyframes of a map, in their order.
 [[nodiscard]] std::vector<PatchAnchor> patch_anchors(const Map& map);

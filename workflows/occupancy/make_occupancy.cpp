@@ -1,7 +1,7 @@
 #include "workflows/occupancy/make_occupancy.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
 #include <ctime>
 #include <map>
 #include <utility>
@@ -12,9 +12,9 @@
 #include "mapping/occupancy/reading_dependence.hpp"
 #include "mapping/pieces.hpp"
 #include "workflows/occupancy/beam_model_file.hpp"
+#include "workflows/occupancy/camera_sights.hpp"
 #include "workflows/occupancy/drive_poses.hpp"
 #include "workflows/occupancy/drive_scans.hpp"
-#include "workflows/occupancy/true_surfaces.hpp"
 
 namespace roadbook {
 namespace {
@@ -79,11 +79,14 @@ RangeMixture mixture_for(const OccupancyRequest& request,
   return fitted.mixture;
 }
 
-void drop_drive(const std::string& digest, StoredOccupancy& stored) {
+void drop_drive(const OccupancyDrive& again, StoredOccupancy& stored) {
+  const auto same = [&](const OccupancyDrive& d) {
+    return d.digest == again.digest && d.sensor == again.sensor;
+  };
   for (const OccupancyDrive& d : stored.drives)
-    if (d.digest == digest)
+    if (same(d))
       std::erase_if(stored.patches, [&](const OccupancyPatch& p) { return p.drive == d.drive; });
-  std::erase_if(stored.drives, [&](const OccupancyDrive& d) { return d.digest == digest; });
+  std::erase_if(stored.drives, same);
 }
 
 // A name that no other drive of the grid has.
@@ -96,6 +99,89 @@ std::string free_name(const std::string& name, const StoredOccupancy& stored) {
   return candidate;
 }
 
+void begin_drive(const Drive& drive,
+                 const std::string& sensor,
+                 StoredOccupancy& stored,
+                 OccupancyOfDrive& added) {
+  added.drive.digest = drive.digest();
+  added.drive.sensor = sensor;
+  drop_drive(added.drive, stored);
+  added.drive.drive = free_name(drive.name(), stored);
+}
+
+void end_drive(BuiltPatches built, StoredOccupancy& stored, OccupancyOfDrive& added) {
+  added.updates = built.updates;
+  added.drive.updates = static_cast<std::int64_t>(built.updates);
+  added.patches = built.patches.size();
+  std::move(built.patches.begin(), built.patches.end(), std::back_inserter(stored.patches));
+  stored.drives.push_back(added.drive);
+}
+
+// Cameras do not have a beam, and their sights add up as log odds.
+void refuse_options_of_scanners(const OccupancyRequest& request) {
+  if (request.model != "fitted")
+    throw InvalidOption("--model", request.model, "no beam model with --sensor cameras");
+  if (request.wide_beam_rad > 0.0)
+    throw InvalidOption("--wide-beam", fixed(request.wide_beam_rad, 3),
+                        "no wide beam with --sensor cameras");
+  if (request.update != OccupancyUpdate::kLogOdds)
+    throw InvalidOption("--update", to_text(request.update), "log-odds with --sensor cameras");
+}
+
+int session_of(const Drive& drive, const Map& map, const std::filesystem::path& folder) {
+  const std::string digest = drive.digest();
+  for (std::size_t s = 0; s < map.sessions.size(); ++s)
+    if (map.sessions[s].drive_digest == digest) return static_cast<int>(s);
+  throw Refused("error: " + folder.string() +
+                ": --sensor cameras: got a drive that is no session of the map, want one whose "
+                "landmarks the map has (map --extend adds it)");
+}
+
+OccupancyOfDrive add_cameras(const OccupancyRequest& request,
+                             const std::filesystem::path& folder,
+                             const Map& map,
+                             StoredOccupancy& stored) {
+  const Drive drive = Drive::open(folder);
+  OccupancyOfDrive added;
+  begin_drive(drive, "cameras", stored, added);
+  added.drive.model = "fitted";
+  const int session = session_of(drive, map, folder);
+  const double before = processor_s();
+  const CameraSights seen = camera_sights(map, session);
+  added.on_ground = seen.on_ground;
+  added.raised = seen.raised;
+  BuildPatchesOptions options;
+  options.cell_m = request.cell_m;
+  options.patch_m = request.patch_m;
+  options.num_threads = request.num_threads;
+  auto camera =
+      build_camera_patches(seen.views, seen.sights, patch_anchors(map), added.drive.drive, options);
+  if (!camera)
+    throw Refused("error: " + folder.string() + ": --sensor cameras: got " +
+                  std::to_string(seen.on_ground) + " landmarks on the ground and " +
+                  std::to_string(seen.raised) + " raised ones near the cameras, want both kinds");
+  added.seconds = processor_s() - before;
+  const SightRates& rates = camera->rates;
+  if (!rates.shows_obstacles())
+    throw Refused("error: " + folder.string() + ": --sensor cameras: got " +
+                  std::to_string(seen.raised) + " raised landmarks, too uncertain for cells of " +
+                  fixed(request.cell_m, 2) + " m, want larger cells (--cell-m " +
+                  fixed(2.5 * request.cell_m, 2) + ") or a map with more landmarks");
+  added.drive.sights_raised = rates.raised_if_occupied;
+  added.drive.sights_raised_free = rates.raised_if_free;
+  added.drive.scans = static_cast<std::int64_t>(seen.views.size());
+  added.drive.begin_ns = seen.views.front().t_ns;
+  added.drive.end_ns = seen.views.back().t_ns;
+  added.drive.max_m = CameraSightOptions{}.max_range_m;
+  added.drive.temper = request.temper.value_or(rates.temper());
+  if (stored.drives.empty()) stored.prior = rates.occupied;
+  // A scanner that comes later meets as many surfaces as make this share of cells occupied.
+  if (stored.surfaces_per_m == 0.0)
+    stored.surfaces_per_m = -std::log1p(-rates.occupied * kMetInCell) / request.cell_m;
+  end_drive(std::move(camera->built), stored, added);
+  return added;
+}
+
 OccupancyOfDrive add_drive(const OccupancyRequest& request,
                            const std::filesystem::path& folder,
                            const Map& map,
@@ -103,10 +189,7 @@ OccupancyOfDrive add_drive(const OccupancyRequest& request,
                            Messages& messages) {
   const Drive drive = Drive::open(folder);
   OccupancyOfDrive added;
-  added.drive.digest = drive.digest();
-  drop_drive(added.drive.digest, stored);
-  added.drive.drive = free_name(drive.name(), stored);
-  added.drive.sensor = "range0";
+  begin_drive(drive, "range0", stored, added);
   added.drive.model = request.model;
   const DrivePoses poses = drive_poses(drive, map, request.map, request.num_threads, messages);
   added.drive.localised = poses.localised;
@@ -145,48 +228,31 @@ OccupancyOfDrive add_drive(const OccupancyRequest& request,
   BuiltPatches built = build_patches(read.scans, poses.anchors_of(read.scans, map), anchors,
                                      added.drive.drive, inverse, options);
   added.seconds = processor_s() - before;
-  added.updates = built.updates;
-  added.patches = built.patches.size();
-  std::move(built.patches.begin(), built.patches.end(), std::back_inserter(stored.patches));
-  stored.drives.push_back(added.drive);
+  end_drive(std::move(built), stored, added);
   return added;
 }
 
 }  // namespace
 
-PoseOfKeyframe keyframe_poses(const Map& map) {
-  std::map<std::pair<std::string, std::int64_t>, PlanePose> poses;
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    const Keyframe& keyframe = map.keyframes[k];
-    const auto& name = map.sessions[static_cast<std::size_t>(keyframe.session)].name;
-    poses[{name, keyframe.t_ns}] = plane_pose(map.T_map_vehicle(static_cast<int>(k)));
-  }
-  return [poses = std::move(poses)](const std::string& session,
-                                    std::int64_t t_ns) -> std::optional<PlanePose> {
-    const auto found = poses.find({session, t_ns});
-    if (found == poses.end()) return std::nullopt;
-    return found->second;
-  };
-}
-
 OccupancyResult make_occupancy(const OccupancyRequest& request, Messages& messages) {
+  const bool cameras = request.sensor == OccupancySensor::kCameras;
+  if (cameras) refuse_options_of_scanners(request);
   MapUpdate update(request.map);  // locks the map between reading and writing
   const Map map = load_joined_map(request.map);
   const MapLayers layers(request.map);
   OccupancyResult result;
   result.stored = stored_or_new(layers, request);
   for (const auto& folder : request.drives)
-    result.drives.push_back(add_drive(request, folder, map, result.stored, messages));
+    result.drives.push_back(cameras ? add_cameras(request, folder, map, result.stored)
+                                    : add_drive(request, folder, map, result.stored, messages));
   std::map<std::string, double> temper;
   for (const OccupancyDrive& d : result.stored.drives) temper[d.drive] = d.temper;
   result.grid = place_patches(result.stored.patches, keyframe_poses(map), temper);
   if (result.grid.shape.size() == 0)
     throw Refused("error: " + request.map.string() +
                   ": occupancy_patches: got none on poses of this map, want some");
-  result.figures = occupancy_figures(result.stored, result.grid);
-  if (const auto surfaces = true_surfaces(request.map, map, request.drives))
-    result.truth = score_occupancy(result.grid, result.stored.prior_log_odds(),
-                                   true_cells(result.grid.shape, *surfaces));
+  result.demands = occupancy_demands(result.stored, result.grid, map,
+                                     true_place(request.map, map, request.drives));
   write_occupancy_layers(update, result.stored, result.grid);
   std::int64_t newest_ns = 0;
   for (const OccupancyPatch& p : result.stored.patches) newest_ns = std::max(newest_ns, p.end_ns);

@@ -150,4 +150,33 @@ OccupancyTruth score_occupancy(const OccupancyGrid& grid,
   return score;
 }
 
+OccupancyTrails score_trails(const OccupancyGrid& grid,
+                             double prior_log_odds,
+                             const TrueCells& truth,
+                             const std::vector<Eigen::Vector2d>& walked) {
+  constexpr double kBody_m = 0.3;
+  const CellShape& shape = grid.shape;
+  std::vector<char> crossed(shape.size(), 0);
+  const int reach = static_cast<int>(kBody_m / shape.cell_m);
+  for (const Eigen::Vector2d& p : walked) {
+    const Eigen::Vector2d at = (p - shape.low) / shape.cell_m;
+    for (int dr = -reach; dr <= reach; ++dr)
+      for (int dc = -reach; dc <= reach; ++dc) {
+        const int column = static_cast<int>(std::floor(at.x())) + dc;
+        const int row = static_cast<int>(std::floor(at.y())) + dr;
+        if (dr * dr + dc * dc <= reach * reach && shape.holds(column, row))
+          crossed[shape.index(column, row)] = 1;
+      }
+  }
+  OccupancyTrails trails;
+  double called = 0.0;
+  for (std::size_t i = 0; i < crossed.size(); ++i) {
+    if (crossed[i] == 0 || truth.occupied[i] != 0 || grid.seen[i] == 0) continue;
+    ++trails.crossed;
+    called += grid.probability(i, prior_log_odds) > kOccupiedProbability ? 1.0 : 0.0;
+  }
+  if (trails.crossed > 0) trails.called_occupied = called / static_cast<double>(trails.crossed);
+  return trails;
+}
+
 }  // namespace roadbook

@@ -52,4 +52,14 @@ struct OccupancyTruth {
                                              double prior_log_odds,
                                              const TrueCells& truth);
 
+/// Free cells that people crossed (0.3 m around each place) and that a reading reached.
+struct OccupancyTrails {
+  std::size_t crossed = 0;
+  double called_occupied = 0.0;  ///< share of them
+};
+[[nodiscard]] OccupancyTrails score_trails(const OccupancyGrid& grid,
+                                           double prior_log_odds,
+                                           const TrueCells& truth,
+                                           const std::vector<Eigen::Vector2d>& walked);
+
 }  // namespace roadbook

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text_file.hpp"
+#include "drive/csv.hpp"
 #include "drive/drive.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/world/moved_patches.hpp"
@@ -66,22 +67,41 @@ Surfaces surfaces_at_height(const World& world, double height_m) {
   return surfaces;
 }
 
-std::optional<Surfaces> true_surfaces(const std::filesystem::path& map_file,
-                                      const Map& map,
-                                      const std::vector<std::filesystem::path>& drives) {
+std::vector<Eigen::Vector2d> places_walked(const std::filesystem::path& drive) {
+  const auto file = drive / "truth" / "pedestrians.csv";
+  std::vector<Eigen::Vector2d> places;
+  if (!std::filesystem::exists(file)) return places;
+  ProblemList problems;
+  CsvReader csv(file, CsvHeader::kRequired, problems);
+  while (csv.good() && csv.next())
+    if (const auto x = csv.number(2), y = csv.number(3); x && y) places.emplace_back(*x, *y);
+  return places;
+}
+
+std::optional<TruePlace> true_place(const std::filesystem::path& map_file,
+                                    const Map& map,
+                                    const std::vector<std::filesystem::path>& drives) {
+  constexpr double kWithoutScanner_m = 0.5;  // within doors, walls and cars
   if (drives.empty()) return std::nullopt;
   const Drive drive = Drive::open(drives.back());
   const auto& model = drive.range_model();
-  if (!model) return std::nullopt;
   const auto T_map_world = world_in_map(map_file, map, drive);
   if (!T_map_world) return std::nullopt;
   const auto world = world_of(drive.folder());
   if (!world) return std::nullopt;
-  Surfaces surfaces = surfaces_at_height(*world, model->T_vehicle_sensor.translation().z());
-  for (auto& [a, b] : surfaces)
-    for (Eigen::Vector2d* const p : {&a, &b})
-      *p = (*T_map_world * Eigen::Vector3d(p->x(), p->y(), 0.0)).head<2>();
-  return surfaces;
+  TruePlace place;
+  place.surfaces = surfaces_at_height(
+      *world, model ? model->T_vehicle_sensor.translation().z() : kWithoutScanner_m);
+  place.walked = places_walked(drive.folder());
+  const auto to_map = [&](Eigen::Vector2d& p) {
+    p = (*T_map_world * Eigen::Vector3d(p.x(), p.y(), 0.0)).head<2>();
+  };
+  for (auto& [a, b] : place.surfaces) {
+    to_map(a);
+    to_map(b);
+  }
+  for (Eigen::Vector2d& p : place.walked) to_map(p);
+  return place;
 }
 
 }  // namespace roadbook

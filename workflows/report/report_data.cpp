@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drive/drive.hpp"
+#include "mapping/pieces.hpp"
 #include "mapping/store/map_reading.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "workflows/drive_images.hpp"
@@ -59,6 +60,7 @@ ReportData collect_report(const std::filesystem::path& map_file,
   data.overhead = overhead_picture(layers);
   data.network = stored_network(layers);
   data.speeds = collect_speeds(layers);
+  data.occupancy = demands_of_map(map_file, load_joined_map(map_file));
   const auto drives = look_again ? drives_of(data) : std::vector<std::optional<Drive>>();
   const auto images = look_again ? images_of_drives(&data.map, &drives) : KeyframeImages();
   data.labels = collect_labels(map_file, data.map, before, images);

@@ -9,6 +9,7 @@
 #include "mapping/sessions/session_value.hpp"
 #include "mapping/store/map_file.hpp"
 #include "roadnet/build_network.hpp"
+#include "workflows/occupancy/occupancy_demands.hpp"
 #include "workflows/report/ground_picture.hpp"
 #include "workflows/report/label_report.hpp"
 #include "workflows/report/map_quality.hpp"
@@ -34,11 +35,12 @@ struct ReportData {
   std::vector<std::string> warnings;
   TruthComparisons truth;
   std::optional<GroundPicture> overhead;
-  std::optional<RoadNetwork> network;   ///< as stored in the map
-  RoadNetworkStages stages_of_network;  ///< recomputed for the pictures
-  std::optional<SpeedReport> speeds;    ///< empty if the map has neither speeds nor friction
-  std::optional<LabelReport> labels;    ///< empty if the map has no labels
-  std::vector<SessionValue> value;      ///< of its sessions for each other; empty for one session
+  std::optional<RoadNetwork> network;         ///< as stored in the map
+  RoadNetworkStages stages_of_network;        ///< recomputed for the pictures
+  std::optional<SpeedReport> speeds;          ///< empty if the map has neither speeds nor friction
+  std::optional<OccupancyDemands> occupancy;  ///< empty if the map has no occupancy grid
+  std::optional<LabelReport> labels;          ///< empty if the map has no labels
+  std::vector<SessionValue> value;  ///< of its sessions for each other; empty for one session
 };
 
 /// Collects the data of the report. Throws BadInput for a map that cannot be used. If a drive is

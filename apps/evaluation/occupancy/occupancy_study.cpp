@@ -7,35 +7,6 @@
 namespace roadbook {
 namespace {
 
-// Cells within a step of where a person stood, in which nothing of the place is.
-void count_trails(const RuledGrid& ruled,
-                  const TrueCells& truth,
-                  const std::vector<Eigen::Vector2d>& walked,
-                  OccupancyCase& result) {
-  constexpr double kBody_m = 0.3;
-  const CellShape& shape = ruled.grid.shape;
-  std::vector<char> crossed(shape.size(), 0);
-  const int reach = static_cast<int>(kBody_m / shape.cell_m);
-  for (const Eigen::Vector2d& p : walked) {
-    const Eigen::Vector2d at = (p - shape.low) / shape.cell_m;
-    for (int dr = -reach; dr <= reach; ++dr)
-      for (int dc = -reach; dc <= reach; ++dc) {
-        const int column = static_cast<int>(std::floor(at.x())) + dc;
-        const int row = static_cast<int>(std::floor(at.y())) + dr;
-        if (dr * dr + dc * dc <= reach * reach && shape.holds(column, row))
-          crossed[shape.index(column, row)] = 1;
-      }
-  }
-  std::size_t called = 0;
-  for (std::size_t i = 0; i < crossed.size(); ++i) {
-    if (crossed[i] == 0 || truth.occupied[i] != 0 || ruled.grid.seen[i] == 0) continue;
-    ++result.crossed;
-    called += ruled.grid.probability(i, ruled.prior_log_odds) > kOccupiedProbability ? 1U : 0U;
-  }
-  result.trails =
-      result.crossed > 0 ? static_cast<double>(called) / static_cast<double>(result.crossed) : 0.0;
-}
-
 class CaseTable {
  public:
   CaseTable(const SimulatedScans& drive, const RuleOptions& rules) : drive_(drive), rules_(rules) {}
@@ -50,7 +21,10 @@ class CaseTable {
     one.temper = ruled.temper;
     const TrueCells truth = true_cells(ruled.grid.shape, drive_.surfaces);
     one.score = score_occupancy(ruled.grid, ruled.prior_log_odds, truth);
-    count_trails(ruled, truth, drive_.walked, one);
+    const OccupancyTrails trails =
+        score_trails(ruled.grid, ruled.prior_log_odds, truth, drive_.walked);
+    one.crossed = trails.crossed;
+    one.trails = trails.called_occupied;
     cases.push_back(one);
     return one;
   }

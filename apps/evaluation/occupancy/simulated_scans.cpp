@@ -7,7 +7,6 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
-#include "drive/csv.hpp"
 #include "drive/drive.hpp"
 #include "sim/simulate.hpp"
 #include "workflows/localisation/localisation_figures.hpp"
@@ -15,15 +14,6 @@
 
 namespace roadbook {
 namespace {
-
-std::vector<Eigen::Vector2d> places_walked(const std::filesystem::path& file) {
-  std::vector<Eigen::Vector2d> places;
-  ProblemList problems;
-  CsvReader csv(file, CsvHeader::kRequired, problems);
-  while (csv.good() && csv.next())
-    if (const auto x = csv.number(2), y = csv.number(3); x && y) places.emplace_back(*x, *y);
-  return places;
-}
 
 // Distance along a ray to a segment; infinity if the ray misses it.
 double to_segment(const Eigen::Vector2d& o,
@@ -76,7 +66,7 @@ SimulatedScans simulate_scans(const std::filesystem::path& folder,
   result.max_m = read.model.max_m;
   const World world = make_world(scenario, {}, options.num_threads, progress);
   result.surfaces = surfaces_at_height(world, read.model.T_vehicle_sensor.translation().z());
-  result.walked = places_walked(folder / "truth" / "pedestrians.csv");
+  result.walked = places_walked(folder);
   return result;
 }
 

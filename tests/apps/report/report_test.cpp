@@ -4,6 +4,7 @@
 #include <regex>
 
 #include "apps/report/page.hpp"
+#include "exchange/layers/occupancy_layers.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "tests/apps/run_command.hpp"
 
@@ -124,6 +125,53 @@ TEST_F(Report, ClosesEveryTagItOpens) {
     }
   }
   EXPECT_TRUE(open.empty());
+}
+
+// A grid of two cells that hangs on the first keyframe, without a truth.
+void write_two_cells(const std::filesystem::path& map) {
+  StoredOccupancy stored;
+  OccupancyDrive drive;
+  drive.drive = "<drive>";
+  drive.digest = "0";
+  drive.sensor = "cameras";
+  drive.model = "fitted";
+  drive.scans = 4;
+  drive.updates = 10;
+  stored.drives = {drive};
+  OccupancyPatch patch;
+  patch.session = "<first> & only";
+  patch.t_ns = 1'000'000'000;
+  patch.drive = drive.drive;
+  patch.columns = 2;
+  patch.rows = 1;
+  patch.log_odds = {-8000, 0};
+  patch.seen = {30, 2};
+  patch.hits = {2, 0};
+  stored.patches = {patch};
+  const OccupancyGrid grid = place_patches(
+      stored.patches, [](const std::string&, std::int64_t) { return std::optional(PlanePose{}); },
+      {});
+  MapUpdate update(map);
+  write_occupancy_layers(update, stored, grid);
+  update.commit();
+}
+
+TEST_F(Report, ScoresTheGridAgainstTheSevenDemands) {
+  EXPECT_EQ(report_page(collect_report(map_)).find("Free space"), std::string::npos);
+  write_two_cells(map_);
+  const ReportData data = collect_report(map_);
+  ASSERT_TRUE(data.occupancy);
+  EXPECT_EQ(data.occupancy->figures.cells, 2U);
+  EXPECT_EQ(data.occupancy->free_share(), 0.5);
+  EXPECT_EQ(data.occupancy->figures.vanished_share, 1.0);
+  EXPECT_EQ(data.occupancy->updates_a_scan(), 2.5);
+  EXPECT_EQ(data.occupancy->driven.seen, 2U);
+  EXPECT_FALSE(data.occupancy->truth);
+  const std::string page = report_page(data);
+  for (const char* demand :
+       {"1 complete", "2 compact", "3 real time", "4 suppresses detail", "5 free space",
+        "6 moving things", "7 uncertainty", "unknown: no true surfaces at hand", "&lt;drive&gt;"})
+    EXPECT_NE(page.find(demand), std::string::npos) << demand;
 }
 
 TEST_F(Report, ShowsNamesFromOutsideAsText) {
