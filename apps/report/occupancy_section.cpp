@@ -16,20 +16,20 @@ double part_of(std::size_t part, std::size_t whole) {
   return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(whole, 1));
 }
 
-// A row: the demand, its figure, what is wanted, and what the figure means.
+// A row: the demand, its figure, the wanted figure, and the meaning.
 HtmlRow wanted_row(const std::string& demand,
                    const std::string& figure,
                    const std::string& wanted,
                    bool met,
                    const std::string& meaning) {
-  return {demand, figure, wanted, met ? "met" : "not met", meaning};
+  return {demand, figure, wanted + (met ? " (met)" : " (not met)"), meaning};
 }
 
 HtmlRow open_row(const std::string& demand,
                  const std::string& figure,
                  const std::string& wanted,
                  const std::string& meaning) {
-  return {demand, figure, wanted, "", meaning};
+  return {demand, figure, wanted, meaning};
 }
 
 void add_free_space(const OccupancyDemands& d, std::vector<HtmlRow>& rows) {
@@ -102,7 +102,7 @@ std::string occupancy_section(const ReportData& data) {
       "<p>The grid against the seven demands on a representation of the environment. "
       "Cells have " +
       fixed(100.0 * demands.cell_m, 0) + " cm.</p>";
-  html += html_table({"demand", "figure", "wanted", "", "meaning"}, demand_rows(demands));
+  html += html_table({"demand", "figure", "wanted", "meaning"}, demand_rows(demands));
   std::vector<HtmlRow> drives;
   for (const OccupancyDrive& d : demands.drives)
     drives.push_back({d.drive, d.sensor == "cameras" ? "cameras" : "range scanner",

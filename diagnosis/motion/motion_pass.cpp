@@ -85,10 +85,17 @@ class PassRunner {
     if (options_.inflation != nullptr) sigma *= (*options_.inflation)[row];
     for (std::size_t i = 0; i < elimination_.slots(); ++i) row_[i] /= sigma;
     fill_sides(row_.data() + elimination_.slots(), channel, k, 1.0 / sigma, Probe::kRow, row);
-    keep(row, channel, t);
+    keep(row, channel, t, sigma);
   }
-  void keep(std::size_t row, Channel channel, double t) {
-    const double variance = elimination_.measure(row_.data());
+  // Share of its white noise in the error that is new in a pose; 1 for other channels.
+  [[nodiscard]] double white_share(Channel channel, double sigma) const {
+    const std::size_t pose = index_of(Channel::kPoseAlong);
+    if (!options_.whole_pose_errors || index_of(channel) < pose) return 1.0;
+    const double added = new_error_[index_of(channel) - pose] / sigma;
+    return 1.0 / (1.0 + added * added);
+  }
+  void keep(std::size_t row, Channel channel, double t, double sigma = 1.0) {
+    const double variance = elimination_.measure(row_.data()) * white_share(channel, sigma);
     if (variance > 0.0) {
       out_.of.push_back({row, index_of(channel), t, variance});
       out_.values.insert(out_.values.end(),
@@ -195,7 +202,9 @@ class PassRunner {
 
   // The errors of the poses from the last pose to this one.
   void renew_errors(double t) {
-    if (!noise_.lasting.present() || pose_ == 0) return;
+    if (!noise_.lasting.present()) return;
+    for (std::size_t i = 0; i < kErrors; ++i) new_error_[i] = noise_.lasting.sigma(i);
+    if (pose_ == 0) return;
     const double passed = std::max(t - times_.poses[pose_ - 1], 0.0);
     ErrorStep step;
     for (std::size_t i = 0; i < kErrors; ++i) {
@@ -203,6 +212,7 @@ class PassRunner {
       step.sigma[i] =
           noise_.lasting.sigma(i) * std::sqrt(std::max(1.0 - step.stays[i] * step.stays[i], 1e-9));
     }
+    new_error_ = step.sigma;
     elimination_.renew_errors(step);
   }
 
@@ -283,6 +293,7 @@ class PassRunner {
   Elimination elimination_;
   std::vector<double> row_, walk_, knot_sides_;
   Innovations out_;
+  std::array<double, kErrors> new_error_{};  ///< of the current pose, beside its white noise
   std::size_t wheel_ = 0, gyro_ = 0, steering_ = 0, pose_ = 0;
 };
 

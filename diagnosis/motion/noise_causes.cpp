@@ -77,7 +77,7 @@ void look_into_poses(const Observations& obs,
                      std::vector<NoiseCause>& all) {
   Columns none;
   const Innovations in =
-      run_pass(obs, model.point, model.noise, none, {false, 0, &model.inflation}).innovations;
+      run_pass(obs, model.point, model.noise, none, {false, 0, &model.inflation, true}).innovations;
   std::array<std::vector<VarianceSample>, 3> by_channel;
   std::array<std::vector<double>, 3> channels;
   for (std::size_t i = 0; i < in.of.size(); ++i) {

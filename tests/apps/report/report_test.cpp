@@ -130,6 +130,7 @@ TEST_F(Report, ClosesEveryTagItOpens) {
 // A grid of two cells that hangs on the first keyframe, without a truth.
 void write_two_cells(const std::filesystem::path& map) {
   StoredOccupancy stored;
+  stored.prior = 0.3;  // the cell without a change of its log odds is undecided
   OccupancyDrive drive;
   drive.drive = "<drive>";
   drive.digest = "0";

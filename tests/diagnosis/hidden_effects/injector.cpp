@@ -234,6 +234,18 @@ const std::vector<OutsideEffect>& outside_effects() {
   return kOutside;
 }
 
+HiddenDriveOptions drive_with_lasting_errors(double time_s, std::uint64_t seed) {
+  constexpr double kPoseStepS = 0.08;
+  constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  Random random(seed, "lasting " + std::to_string(time_s));
+  HiddenDriveOptions options;
+  options.seed = random() >> 1U;
+  options.pose_sigma_m = 0.01 * std::pow(50.0, random.uniform());
+  options.pose_sigma_rad = 0.03 * kDegree * std::pow(0.5 / 0.03, random.uniform());
+  options.secret["poses.correlation"] = std::exp(-kPoseStepS / time_s);
+  return options;
+}
+
 double draw_size(const EffectRange& range, std::uint64_t seed) {
   Random random(seed, "size " + range.name);
   const double size = range.low * std::pow(range.high / range.low, random.uniform());

@@ -31,6 +31,9 @@ struct HiddenDriveOptions {
   double steering_step_rad = 0.0;  ///< its readings are rounded to
 };
 
+/// A drive whose poses have errors that last `time_s`, of 1 to 50 cm and 0.03 to 0.5 degrees.
+[[nodiscard]] HiddenDriveOptions drive_with_lasting_errors(double time_s, std::uint64_t seed);
+
 struct Recording {
   WheelModel wheel_model;  ///< nominal: what sensor.yaml says
   std::vector<WheelReading> wheels;

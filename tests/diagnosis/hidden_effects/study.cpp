@@ -14,8 +14,8 @@
 #include "tests/diagnosis/hidden_effects/study_cases.hpp"
 #include "tests/support/found_causes.hpp"
 
-// hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | effects | pairs | removed |
-// outside | correlated | columns | idle_columns | noise_pairs | noise_sizes | patches; of effects
+// hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | lasting | effects | pairs | removed
+// | outside | correlated | columns | idle_columns | noise_pairs | noise_sizes | patches; of effects
 // only those whose name holds NAME, of nulls the scatter of the poses [m] instead of 0.02. One line
 // an effect, and every drive that went wrong.
 
@@ -69,6 +69,30 @@ void study_nulls(std::size_t drives, std::uint64_t seed, int threads, double pos
   }
   std::printf("null: %zu alarms of %zu, %.3f s a drive\n", alarms, drives,
               seconds / static_cast<double>(drives));
+}
+
+// Drives without an effect whose poses have errors that last.
+void study_lasting(std::size_t drives, std::uint64_t seed, int threads) {
+  for (const double time_s : {0.3, 1.0, 3.0, 10.0}) {
+    std::vector<Job> jobs(drives);
+    for (std::size_t i = 0; i < drives; ++i)
+      jobs[i].hidden = drive_with_lasting_errors(time_s, Random(seed, "study lasting", i)() >> 1U);
+    std::size_t alarms = 0, named = 0;
+    double seconds = 0.0;
+    for (const Outcome& o : run_all(jobs, threads)) {
+      seconds += o.seconds;
+      const bool correlation = o.cause("poses.correlation") != nullptr;
+      named += correlation ? 1 : 0;
+      if (o.found.unknown.empty() && o.found.causes.size() == (correlation ? 1U : 0U)) continue;
+      ++alarms;
+      std::printf("  %.3f m, %.4f rad: %s\n", o.hidden.pose_sigma_m, o.hidden.pose_sigma_rad,
+                  o.to_line().c_str());
+    }
+    std::printf(
+        "errors that last %.1f s: %zu alarms of %zu, correlation named %zu, %.3f s a drive\n",
+        time_s, alarms, drives, named, seconds / static_cast<double>(drives));
+    std::fflush(stdout);
+  }
 }
 
 struct Tally {
@@ -295,10 +319,11 @@ void study_patches(std::size_t drives, std::uint64_t seed, int threads) {
 
 int main(int count, char** words) {
   if (count < 5) {
-    std::fprintf(stderr,
-                 "usage: %s nulls|effects|pairs|removed|outside|correlated|columns|idle_columns|"
-                 "noise_pairs|noise_sizes|patches DRIVES SEED THREADS [NAME | POSE_SIGMA_M]\n",
-                 words[0]);
+    std::fprintf(
+        stderr,
+        "usage: %s nulls|lasting|effects|pairs|removed|outside|correlated|columns|idle_columns|"
+        "noise_pairs|noise_sizes|patches DRIVES SEED THREADS [NAME | POSE_SIGMA_M]\n",
+        words[0]);
     return 1;
   }
   const std::string mode = words[1];
@@ -309,6 +334,7 @@ int main(int count, char** words) {
     roadbook::test::study_nulls(
         drives, seed, threads,
         count > 5 ? std::atof(words[5]) : roadbook::test::HiddenDriveOptions{}.pose_sigma_m);
+  if (mode == "lasting") roadbook::test::study_lasting(drives, seed, threads);
   if (mode == "effects")
     roadbook::test::study_effects(drives, seed, threads, count > 5 ? words[5] : "");
   if (mode == "pairs") roadbook::test::study_pairs(drives, seed, threads);

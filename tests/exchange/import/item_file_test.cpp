@@ -156,7 +156,11 @@ TEST_F(ItemFiles, AnyBytesGiveItemsOrAFault) {
   int read_well = 0;
   for (int k = 0; k < 500; ++k) {
     std::string text = good;
-    for (std::uint64_t n = 1 + random.below(2); n > 0; --n) {
+    if (random.below(2) == 0) {  // a digit alone: most of these files are still JSON
+      const std::size_t from = random.below(text.size());
+      const std::size_t digit = text.find_first_of("0123456789", from);
+      if (digit != std::string::npos) text[digit] = static_cast<char>('0' + random.below(10));
+    } else {
       const std::size_t at = random.below(text.size());
       const std::string& word = words[random.below(words.size())];
       if (random.below(3) == 0)
@@ -177,7 +181,7 @@ TEST_F(ItemFiles, AnyBytesGiveItemsOrAFault) {
       } catch (const BadInput&) {
       }
   }
-  EXPECT_GT(read_well, 0) << "some damage is harmless";
+  EXPECT_GT(read_well, 100) << "some damage is harmless";
 }
 
 TEST_F(ItemFiles, ReadsBackFromTheMapAndRefusesATableThatContradictsItself) {
