@@ -90,13 +90,17 @@ void allow_for_correlated(std::span<const Channel> channels,
   }
 }
 
-// Moves the trajectory to the optimum for the model's noise, without effects.
+// Moves the trajectory to the optimum for the model's noise, without effects. Steering is far from
+// linear where the speed is wrong: it counts only after the first iterations.
 void follow(const Observations& obs, MotionModel& model) {
-  constexpr int kIterations = 5;
+  constexpr int kWithoutSteering = 4, kIterations = 8;
+  constexpr double kLoose = 100.0;
   const Columns none;
   for (int i = 0; i < kIterations; ++i) {
+    MotionNoise noise = model.noise;
+    if (i < kWithoutSteering) noise.steering_rad *= kLoose;
     renew_residual(obs, model);
-    const Pass pass = run_pass(obs, model.point, model.noise, none, {true, 0, &model.inflation});
+    const Pass pass = run_pass(obs, model.point, noise, none, {true, 0, &model.inflation});
     apply_solution(pass.elimination.back_substitute({1.0}), model.point.trajectory);
   }
 }
@@ -156,7 +160,7 @@ class PoseNoiseSearch {
   [[nodiscard]] const MotionNoise& best() const { return best_; }
 
   void try_starts() {
-    constexpr std::array kTimesS{0.15, 0.4, 1.0, 3.0, 10.0};
+    constexpr std::array kTimesS{0.2, 1.0, 5.0};
     constexpr std::array kWhite{1.0, 0.2};
     const MotionNoise start = best_;
     for (const double white : kWhite)
@@ -172,8 +176,8 @@ class PoseNoiseSearch {
   }
 
   void climb(double step) {
-    constexpr double kLeastStep = 0.09;
-    constexpr int kMostSweeps = 12;
+    constexpr double kLeastStep = 0.12;
+    constexpr int kMostSweeps = 8;
     for (int sweep = 0; sweep < kMostSweeps && step > kLeastStep; ++sweep) {
       const MotionNoise before = best_;
       if (!climb_each(step))

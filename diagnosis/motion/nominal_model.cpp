@@ -18,7 +18,7 @@ namespace roadbook {
 namespace {
 
 constexpr int kNoiseIterations = 4;
-constexpr int kLastingIterations = 3;
+constexpr int kLastingIterations = 2;
 constexpr std::size_t kPassProbes = 4;
 
 // A mean that is off by its noise's scatter is inflated, not trusted: beyond five sigma lies one
