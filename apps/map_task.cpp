@@ -31,7 +31,7 @@ void add_task_options(Options& options, MapTask& task) {
   options.add("--drop-labels", &task.removal.drop_labels,
               "with --remove: delete labels that no earlier session shows");
   options.add("--split", &task.split.part,
-              "write the session NAME, or NAME@T0,T1 [ns], as a separate map");
+              "write the session NAME, or `NAME@T0,T1` [ns], as a separate map");
   options.add("--output,-o", &task.split.output, "with --split: map file to write");
   options.add("--merge", &task.merge.other, "add the sessions of this map of the same place");
 }

@@ -10,7 +10,7 @@ namespace roadbook {
 
 struct SplitRequest {
   std::filesystem::path map;
-  std::string part;              ///< NAME, or NAME@T0,T1 with times in nanoseconds
+  std::string part;              ///< NAME, or `NAME@T0,T1` with times in nanoseconds
   std::filesystem::path output;  ///< map file that does not exist yet
   int num_threads = 0;
 };

@@ -86,8 +86,9 @@ std::vector<TimedPose> reference_poses(const VehicleMotion& motion,
   off.bend = effect_size(hidden, "map", "bend");
   const VehicleState first = motion.at(-off.latency);
   const PlanarPose<double> origin{first.x, first.y, 0.0};
+  // One more than there are: a product may round otherwise than a quotient.
   const auto lasting = lasting_errors(
-      static_cast<std::size_t>(motion.duration_s() / kTruePoseStep) + 1, seed, reference);
+      static_cast<std::size_t>(motion.duration_s() / kTruePoseStep) + 2, seed, reference);
   std::vector<TimedPose> poses;
   for (int k = 0; kTruePoseStep * k <= motion.duration_s(); ++k) {
     const VehicleState s = motion.at(kTruePoseStep * k - off.latency);

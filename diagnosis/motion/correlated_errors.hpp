@@ -13,19 +13,6 @@ namespace roadbook {
                                    MotionModel& model,
                                    const HeldEffects& s);
 
-/// Gives the poses errors that last, as large as their present scatter, and moves the trajectory to
-/// where motion and poses agree best then: with white noise alone it follows the poses.
-void begin_lasting_errors(const Observations& obs, MotionModel& model);
-
-/// Estimates the poses' errors that last, and the white noise beside them, by maximum likelihood
-/// with the effects integrated out. Creep is set to its least value: sideways errors of the poses
-/// look like it. The trajectory stays; `model.noise.lasting` and `model.noise.pose` change.
-/// `first`: from several starts; else from the present values.
-void fit_lasting_errors(const Observations& obs,
-                        MotionModel& model,
-                        const HeldEffects& s,
-                        bool first);
-
 /// Increases the noise of poses whose innovations are autocorrelated.
 void allow_for_correlated_poses(const Observations& obs, MotionModel& model, const HeldEffects& s);
 

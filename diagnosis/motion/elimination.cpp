@@ -9,13 +9,13 @@ namespace roadbook {
 namespace {
 
 // Columns of the rows at a knot: eliminated unknowns (creep, speed and yaw rate at A), then the
-// slots of the next interval; its end C comes after B. At a step of the errors: old errors, slots.
-constexpr std::size_t kCreep = 0, kGoneSpeed = 1, kGoneYaw = 2, kGone = 3;
-static_assert(kErrors == kGone);
-constexpr std::size_t kMostKnotColumns = kGone + kSlots;
-static_assert(kMostKnotColumns <= kMostTails);
+// slots of the next interval; its end C comes after B.
+constexpr std::size_t kCreep = 0, kGoneSpeed = 1, kGoneYaw = 2, kKeptColumns = 3;
+constexpr std::size_t kKnotColumns = 3 + kSlots;
+constexpr std::size_t kKnotRows = 3 + kSlots;
+constexpr std::size_t kGone = 3;
 // Columns of the rows at a walk: old drifts, then the slots with the new ones.
-constexpr std::size_t kMostWalkColumns = 2 + kSlots;
+constexpr std::size_t kWalkColumns = 2 + kSlots;
 constexpr std::size_t kWalkRows = 4;
 
 // An unknown without information: a pivot this small against the rows' unit noise.
@@ -23,21 +23,20 @@ constexpr double kNoPivot = 1e-9;
 
 }  // namespace
 
-Elimination::Elimination(std::size_t sides, bool keep, bool errors)
-    : slots_(errors ? kSlots : kMotionSlots),
-      sides_(sides),
+Elimination::Elimination(std::size_t sides, bool keep)
+    : sides_(sides),
       padded_((sides + kTailBlock - 1) / kTailBlock * kTailBlock),
-      stride_(slots_ + padded_),
+      stride_(kSlots + padded_),
       keep_(keep),
-      factor_(slots_ * stride_, 0.0),
-      left_(kMostKnotColumns * kMostKnotColumns, 0.0),
+      factor_(kSlots * stride_, 0.0),
+      left_(kKnotRows * kKnotColumns, 0.0),
       tails_(kGone * padded_, 0.0) {}
 
 double Elimination::measure(double* row) {
   double cosine = 1.0;
   std::array<double, kSlots> c{};
   std::array<double, kSlots> s{};
-  for (std::size_t i = 0; i < slots_; ++i) {
+  for (std::size_t i = 0; i < kSlots; ++i) {
     double* pivot = factor(i);
     if (std::abs(row[i]) > kNoPivot && std::abs(pivot[i]) < kNoPivot) cosine = 0.0;
     c[i] = 1.0;
@@ -45,7 +44,7 @@ double Elimination::measure(double* row) {
     const double length = std::sqrt(pivot[i] * pivot[i] + row[i] * row[i]);
     c[i] = pivot[i] / length;
     s[i] = row[i] / length;
-    for (std::size_t k = i; k < slots_; ++k) {
+    for (std::size_t k = i; k < kSlots; ++k) {
       const double u = pivot[k];
       const double v = row[k];
       pivot[k] = c[i] * u + s[i] * v;
@@ -54,29 +53,28 @@ double Elimination::measure(double* row) {
     row[i] = 0.0;
     cosine *= c[i];
   }
-  rotate_tail(row + slots_, factor(0) + slots_, stride_, slots_, padded_, c.data(), s.data());
+  rotate_tail(row + kSlots, factor(0) + kSlots, stride_, kSlots, padded_, c.data(), s.data());
   return cosine * cosine < 1e-12 ? 0.0 : 1.0 / (cosine * cosine);
 }
 
 // Left parts of the rows at a knot; the step's contributions to right-hand sides go into the tails.
 void Elimination::fill_knot_rows(const KnotStep& step) {
   std::fill(left_.begin(), left_.end(), 0.0);
-  const std::size_t width = knot_columns();
   double* creep = left_.data();
-  double* speed = creep + width;
-  double* yaw = speed + width;
+  double* speed = creep + kKnotColumns;
+  double* yaw = speed + kKnotColumns;
   creep[kCreep] = 1.0 / step.creep_sigma;
   speed[kGoneSpeed] = 1.0 / step.speed_sigma;
-  speed[kGone + kSpeedA] = -2.0 / step.speed_sigma;
-  speed[kGone + kSpeedB] = 1.0 / step.speed_sigma;
+  speed[kKeptColumns + kSpeedA] = -2.0 / step.speed_sigma;
+  speed[kKeptColumns + kSpeedB] = 1.0 / step.speed_sigma;
   tails_[padded_] -= step.speed_bend / step.speed_sigma;
   yaw[kGoneYaw] = 1.0 / step.yaw_sigma;
-  yaw[kGone + kYawA] = -2.0 / step.yaw_sigma;
-  yaw[kGone + kYawB] = 1.0 / step.yaw_sigma;
+  yaw[kKeptColumns + kYawA] = -2.0 / step.yaw_sigma;
+  yaw[kKeptColumns + kYawB] = 1.0 / step.yaw_sigma;
   tails_[2 * padded_] -= step.yaw_bend / step.yaw_sigma;
-  for (std::size_t i = 0; i < slots_; ++i) {
+  for (std::size_t i = 0; i < kSlots; ++i) {
     double* from = factor(i);
-    double* to = left_.data() + (kGone + i) * width;
+    double* to = left_.data() + (kGone + i) * kKnotColumns;
     const double ax = from[kX];
     const double ay = from[kY];
     const double turn = from[kHeading] - ax * step.x_by_heading - ay * step.y_by_heading;
@@ -89,36 +87,15 @@ void Elimination::fill_knot_rows(const KnotStep& step) {
     to[kCreep] = -ax * step.sideways[0] - ay * step.sideways[1];
     to[kGoneSpeed] = rates[0];
     to[kGoneYaw] = rates[1];
-    to[kGone + kDrift] = from[kDrift];
-    to[kGone + kTurnDrift] = from[kTurnDrift];
-    to[kGone + kSpeedA] = rates[2];
-    to[kGone + kYawA] = rates[3];
-    to[kGone + kX] = ax;
-    to[kGone + kY] = ay;
-    to[kGone + kHeading] = turn;
-    std::copy(from + kMotionSlots, from + slots_, to + kGone + kMotionSlots);
-    from[slots_] += ax * step.defect[0] + ay * step.defect[1] + turn * step.defect[2];
+    to[kKeptColumns + kDrift] = from[kDrift];
+    to[kKeptColumns + kTurnDrift] = from[kTurnDrift];
+    to[kKeptColumns + kSpeedA] = rates[2];
+    to[kKeptColumns + kYawA] = rates[3];
+    to[kKeptColumns + kX] = ax;
+    to[kKeptColumns + kY] = ay;
+    to[kKeptColumns + kHeading] = turn;
+    from[kSlots] += ax * step.defect[0] + ay * step.defect[1] + turn * step.defect[2];
   }
-}
-
-// Eliminates the first unknowns of the rows in left_ and tails_ and the factor's sides.
-void Elimination::eliminate_first(bool only_residual) {
-  const std::size_t rows = knot_columns();  // as many as columns
-  triangularise(left_.data(), rows, rows, rows, rotations_);
-  std::array<double*, kMostKnotColumns> tails{};
-  for (std::size_t i = 0; i < kGone; ++i) tails[i] = tails_.data() + i * padded_;
-  for (std::size_t i = 0; i < slots_; ++i) tails[kGone + i] = factor(i) + slots_;
-  // Of many columns, only the residual is non-zero in the eliminated rows: a product is cheaper
-  // there than as many rotations.
-  const bool many = !keep_ && only_residual && padded_ > 8 * kTailBlock;
-  rotate_tails(tails.data(), rows, many ? kTailBlock : padded_, rotations_);
-  if (many) {
-    for (std::size_t i = 0; i < slots_; ++i) tails[kGone + i] += kTailBlock;
-    product_of(rotations_, rows, slots_, product_);
-    multiply_tails(tails.data() + kGone, slots_, padded_ - kTailBlock, product_.data());
-  }
-  for (std::size_t i = 0; i < slots_; ++i)
-    std::copy_n(left_.data() + (kGone + i) * rows + kGone, slots_, factor(i));
 }
 
 void Elimination::advance(const KnotStep& step, const double* sides) {
@@ -126,41 +103,31 @@ void Elimination::advance(const KnotStep& step, const double* sides) {
   for (std::size_t i = 0; sides != nullptr && i < kGone; ++i)
     std::copy_n(sides + i * sides_, sides_, tails_.data() + i * padded_);
   fill_knot_rows(step);
-  eliminate_first(sides == nullptr);
+  triangularise(left_.data(), kKnotRows, kKnotColumns, kKnotColumns, rotations_);
+  std::array<double*, kKnotRows> tails{};
+  for (std::size_t i = 0; i < kGone; ++i) tails[i] = tails_.data() + i * padded_;
+  for (std::size_t i = 0; i < kSlots; ++i) tails[kGone + i] = factor(i) + kSlots;
+  // Of many columns, only the residual is non-zero in the eliminated rows: a product is cheaper
+  // there than as many rotations.
+  const bool many = !keep_ && sides == nullptr && padded_ > 8 * kTailBlock;
+  rotate_tails(tails.data(), kKnotRows, many ? kTailBlock : padded_, rotations_);
+  if (many) {
+    for (std::size_t i = 0; i < kSlots; ++i) tails[kGone + i] += kTailBlock;
+    product_of(rotations_, kKnotRows, kSlots, product_);
+    multiply_tails(tails.data() + kGone, kSlots, padded_ - kTailBlock, product_.data());
+  }
+  for (std::size_t i = 0; i < kSlots; ++i)
+    std::copy_n(left_.data() + (kGone + i) * kKnotColumns + kKeptColumns, kSlots, factor(i));
   if (!keep_) return;
   Operation op;
-  op.kind = Kind::kKnot;
+  op.knot = true;
   op.step = step;
-  op.rows = keep_rows(kGone, knot_columns());
+  op.rows = keep_rows(kGone, kKnotColumns);
   op.own = kept_.size();
   if (sides != nullptr)
     kept_.insert(kept_.end(), sides, sides + 3 * sides_);
   else
     kept_.insert(kept_.end(), 3 * sides_, 0.0);
-  operations_.push_back(op);
-}
-
-void Elimination::renew_errors(const ErrorStep& step) {
-  ROADBOOK_ASSERT(slots_ == kSlots);
-  std::fill(left_.begin(), left_.end(), 0.0);
-  std::fill(tails_.begin(), tails_.end(), 0.0);
-  const std::size_t width = knot_columns();
-  for (std::size_t e = 0; e < kErrors; ++e) {
-    double* row = left_.data() + e * width;
-    row[e] = -step.stays[e] / step.sigma[e];
-    row[kGone + kErrorX + e] = 1.0 / step.sigma[e];
-  }
-  for (std::size_t i = 0; i < slots_; ++i) {
-    const double* from = factor(i);
-    double* to = left_.data() + (kGone + i) * width;
-    std::copy_n(from + kErrorX, kErrors, to);
-    std::copy_n(from, kMotionSlots, to + kGone);
-  }
-  eliminate_first(true);
-  if (!keep_) return;
-  Operation op;
-  op.kind = Kind::kErrorStep;
-  op.rows = keep_rows(kGone, width);
   operations_.push_back(op);
 }
 
@@ -177,37 +144,35 @@ std::size_t Elimination::keep_rows(std::size_t count, std::size_t columns) {
 }
 
 void Elimination::walk(const WheelStep& step, const double* drift_sides, const double* turn_sides) {
-  const std::size_t width = 2 + slots_;
-  std::fill_n(left_.begin(), kWalkRows * width, 0.0);
+  std::fill_n(left_.begin(), kWalkRows * kWalkColumns, 0.0);
   for (std::size_t i = 0; i < 2; ++i) {
-    double* to = left_.data() + i * width;
+    double* to = left_.data() + i * kWalkColumns;
     to[0] = factor(i)[kDrift];
     to[1] = factor(i)[kTurnDrift];
-    std::copy_n(factor(i) + 2, slots_ - 2, to + 4);
-    std::copy_n(factor(i) + slots_, padded_, tails_.data() + i * padded_);
+    std::copy_n(factor(i) + 2, kSlots - 2, to + 4);
+    std::copy_n(factor(i) + kSlots, padded_, tails_.data() + i * padded_);
   }
   const auto walk_row = [&](std::size_t slot, const std::array<double, 4>& rolls, double sigma,
                             const double* sides) {
-    double* to = left_.data() + (2 + slot) * width;
+    double* to = left_.data() + (2 + slot) * kWalkColumns;
     to[slot] = -1.0 / sigma;
     to[2 + slot] = 1.0 / sigma;
     for (std::size_t k = 0; k < 4; ++k) to[2 + kSpeedA + k] = -rolls[k] / sigma;
-    std::copy_n(sides, sides_, factor(slot) + slots_);
+    std::copy_n(sides, sides_, factor(slot) + kSlots);
   };
   walk_row(kDrift, step.drift, step.drift_sigma, drift_sides);
   walk_row(kTurnDrift, step.turn_drift, step.turn_sigma, turn_sides);
-  triangularise(left_.data(), kWalkRows, width, 3, rotations_);
+  triangularise(left_.data(), kWalkRows, kWalkColumns, 3, rotations_);
   // The old rows go and the walks' take their place in the factor.
   const std::array<double*, kWalkRows> tails{tails_.data(), tails_.data() + padded_,
-                                             factor(0) + slots_, factor(1) + slots_};
+                                             factor(0) + kSlots, factor(1) + kSlots};
   rotate_tails(tails.data(), kWalkRows, padded_, rotations_);
   for (std::size_t i = 0; i < 2; ++i)
-    std::copy_n(left_.data() + (2 + i) * width + 2, slots_, factor(i));
+    std::copy_n(left_.data() + (2 + i) * kWalkColumns + 2, kSlots, factor(i));
   if (!keep_) return;
   Operation op;
-  op.kind = Kind::kWalk;
   op.walk = step;
-  op.rows = keep_rows(2, width);
+  op.rows = keep_rows(2, kWalkColumns);
   op.own = kept_.size();
   kept_.insert(kept_.end(), drift_sides, drift_sides + sides_);
   kept_.insert(kept_.end(), turn_sides, turn_sides + sides_);
@@ -220,29 +185,20 @@ double Elimination::combined(std::size_t sides_at, const Weights& weights) const
   return sum;
 }
 
-// The eliminated unknowns, from those that stayed.
-std::array<double, 3> Elimination::first_unknowns(const Operation& op,
-                                                  const Weights& weights,
-                                                  const std::array<double, kSlots>& now) const {
-  const std::size_t columns = knot_columns();
-  const std::size_t width = columns + padded_;
-  std::array<double, kMostKnotColumns> all{};
-  std::copy_n(now.begin(), slots_, all.begin() + kGone);
-  for (std::size_t i = kGone; i-- > 0;) {
-    const double* row = kept_.data() + op.rows + i * width;
-    double value = combined(op.rows + i * width + columns, weights);
-    for (std::size_t k = i + 1; k < columns; ++k) value -= row[k] * all[k];
-    all[i] = std::abs(row[i]) < kNoPivot ? 0.0 : value / row[i];
-  }
-  return {all[0], all[1], all[2]};
-}
-
 void Elimination::undo_knot(const Operation& op,
                             const Weights& weights,
                             std::array<double, kSlots>& now,
                             Solution& solution) const {
+  const std::size_t width = kKnotColumns + padded_;
   const KnotStep& step = op.step;
-  const auto all = first_unknowns(op, weights, now);
+  std::array<double, kKnotColumns> all{};
+  std::copy(now.begin(), now.end(), all.begin() + kKeptColumns);
+  for (std::size_t i = kGone; i-- > 0;) {
+    const double* row = kept_.data() + op.rows + i * width;
+    double value = combined(op.rows + i * width + kKnotColumns, weights);
+    for (std::size_t k = i + 1; k < kKnotColumns; ++k) value -= row[k] * all[k];
+    all[i] = std::abs(row[i]) < kNoPivot ? 0.0 : value / row[i];
+  }
   const double own = weights.front().first == 0 ? weights.front().second : 0.0;
   const std::array<double, 3> sides{combined(op.own, weights), combined(op.own + sides_, weights),
                                     combined(op.own + 2 * sides_, weights)};
@@ -270,7 +226,6 @@ void Elimination::undo_knot(const Operation& op,
     before[kTurnDrift] -= step.turn_drift[k] * rates[k];
     before[kSpeedA + k] = rates[k];
   }
-  std::copy(now.begin() + kMotionSlots, now.end(), before.begin() + kMotionSlots);
   now = before;
   solution.knots.push_back(now);
 }
@@ -279,16 +234,15 @@ void Elimination::undo_walk(const Operation& op,
                             const Weights& weights,
                             std::array<double, kSlots>& now,
                             Solution& solution) const {
-  const std::size_t columns = 2 + slots_;
-  const std::size_t width = columns + padded_;
+  const std::size_t width = kWalkColumns + padded_;
   solution.readings.push_back(
       {now[kDrift] / op.walk.reading_sigma[0], now[kTurnDrift] / op.walk.reading_sigma[1]});
-  std::array<double, kMostWalkColumns> all{};
-  std::copy_n(now.begin(), slots_, all.begin() + 2);
+  std::array<double, kWalkColumns> all{};
+  std::copy(now.begin(), now.end(), all.begin() + 2);
   for (std::size_t i = 2; i-- > 0;) {
     const double* row = kept_.data() + op.rows + i * width;
-    double value = combined(op.rows + i * width + columns, weights);
-    for (std::size_t k = i + 1; k < columns; ++k) value -= row[k] * all[k];
+    double value = combined(op.rows + i * width + kWalkColumns, weights);
+    for (std::size_t k = i + 1; k < kWalkColumns; ++k) value -= row[k] * all[k];
     all[i] = std::abs(row[i]) < kNoPivot ? 0.0 : value / row[i];
   }
   std::array<double, 2> moved{now[kDrift] - all[0], now[kTurnDrift] - all[1]};
@@ -304,22 +258,6 @@ void Elimination::undo_walk(const Operation& op,
   now[kTurnDrift] = all[1];
 }
 
-void Elimination::undo(const Operation& op,
-                       const Weights& weights,
-                       std::array<double, kSlots>& now,
-                       Solution& solution) const {
-  switch (op.kind) {
-    case Kind::kKnot:
-      return undo_knot(op, weights, now, solution);
-    case Kind::kWalk:
-      return undo_walk(op, weights, now, solution);
-    case Kind::kErrorStep:
-      break;
-  }
-  const auto before = first_unknowns(op, weights, now);
-  std::copy(before.begin(), before.end(), now.begin() + kErrorX);
-}
-
 Elimination::Solution Elimination::back_substitute(const std::vector<double>& all) const {
   ROADBOOK_ASSERT(keep_ && all.size() == sides_);
   Weights weights;
@@ -328,16 +266,16 @@ Elimination::Solution Elimination::back_substitute(const std::vector<double>& al
   if (weights.empty()) weights.emplace_back(0, 0.0);
   Solution solution;
   std::array<double, kSlots> now{};
-  for (std::size_t i = slots_; i-- > 0;) {
+  for (std::size_t i = kSlots; i-- > 0;) {
     const double* row = factor_.data() + i * stride_;
     double value = 0.0;
-    for (const auto& [side, weight] : weights) value += weight * row[slots_ + side];
-    for (std::size_t k = i + 1; k < slots_; ++k) value -= row[k] * now[k];
+    for (const auto& [side, weight] : weights) value += weight * row[kSlots + side];
+    for (std::size_t k = i + 1; k < kSlots; ++k) value -= row[k] * now[k];
     now[i] = std::abs(row[i]) < kNoPivot ? 0.0 : value / row[i];
   }
   solution.knots.push_back(now);
   for (auto op = operations_.rbegin(); op != operations_.rend(); ++op)
-    undo(*op, weights, now, solution);
+    op->knot ? undo_knot(*op, weights, now, solution) : undo_walk(*op, weights, now, solution);
   return solution;
 }
 

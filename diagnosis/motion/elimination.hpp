@@ -12,19 +12,15 @@ namespace roadbook {
 // Sequential elimination of a trajectory by Givens rotations (square-root information form, Bierman
 // 1977).
 // There are nine unknowns at a time: the drift of the wheels' distance and heading since the start,
-// speed and yaw rate at both ends of the current knot interval, and the pose at its beginning.
-// Where errors of the poses last, these are three more: first-order Gauss-Markov processes. Rows of
-// readings are folded in one by one, with several right-hand sides. After all unknowns are rotated
-// out, a row leaves its innovation: independent of all others, and N(0, 1) if the row's noise is.
-// The whole trajectory, past and future, is projected out exactly. Cost: linear in the length of
-// the drive.
+// speed and yaw rate at both ends of the current knot interval, and the pose at its beginning. Rows
+// of readings are folded in one by one, with several right-hand sides. After all unknowns are
+// rotated out, a row leaves its innovation: independent of all others, and N(0, 1) if the row's
+// noise is. The whole trajectory, past and future, is projected out exactly. Cost: linear in the
+// length of the drive.
 
 /// The unknowns, in the order of elimination.
 inline constexpr std::size_t kDrift = 0, kTurnDrift = 1, kSpeedA = 2, kYawA = 3, kSpeedB = 4,
-                             kYawB = 5, kX = 6, kY = 7, kHeading = 8, kMotionSlots = 9;
-/// Errors of the poses that last (optional): in the poses' x and y, and of the heading.
-inline constexpr std::size_t kErrorX = 9, kErrorY = 10, kErrorHeading = 11, kErrors = 3,
-                             kSlots = kMotionSlots + kErrors;
+                             kYawB = 5, kX = 6, kY = 7, kHeading = 8, kSlots = 9;
 
 /// How the unknowns of one interval give those of the next; small changes about a reference.
 struct KnotStep {
@@ -53,20 +49,12 @@ struct WheelStep {
   std::array<double, 2> reading_sigma{1.0, 1.0};  ///< of the reading that ends the walk
 };
 
-/// Time passes for the errors of the poses: what is left of each, and sigma of what comes to it.
-struct ErrorStep {
-  std::array<double, kErrors> stays{};
-  std::array<double, kErrors> sigma{1.0, 1.0, 1.0};
-};
-
 class Elimination {
  public:
   /// `sides`: right-hand sides a row; column 0 is the residual. `keep`: store what
-  /// `back_substitute` needs. `errors`: the poses have errors that last.
-  Elimination(std::size_t sides, bool keep, bool errors = false);
+  /// `back_substitute` needs.
+  Elimination(std::size_t sides, bool keep);
 
-  /// Number of unknowns at a time.
-  [[nodiscard]] std::size_t slots() const { return slots_; }
   /// Length of a row: the slots, then the right-hand sides, padded with zeros.
   [[nodiscard]] std::size_t stride() const { return stride_; }
 
@@ -77,8 +65,6 @@ class Elimination {
   /// Continues with the next interval. `sides` (or null: zeros) are the right-hand sides of the
   /// rows of creep, speed and yaw rate, in addition to the step's own bends and defects.
   void advance(const KnotStep& step, const double* sides = nullptr);
-  /// Continues with the errors of the poses at a later time.
-  void renew_errors(const ErrorStep& step);
   /// The wheels' drifts walk; `sides` are those of the two rows, drift first.
   void walk(const WheelStep& step, const double* drift_sides, const double* turn_sides);
 
@@ -97,9 +83,8 @@ class Elimination {
   [[nodiscard]] Solution back_substitute(const std::vector<double>& all) const;
 
  private:
-  enum class Kind { kKnot, kWalk, kErrorStep };
   struct Operation {
-    Kind kind = Kind::kKnot;
+    bool knot = false;
     KnotStep step;
     WheelStep walk;
     std::size_t rows = 0;  ///< index of the dropped rows in kept_
@@ -109,14 +94,6 @@ class Elimination {
   using Weights = std::vector<std::pair<std::size_t, double>>;  ///< side, weight: not 0, ascending
   [[nodiscard]] double combined(std::size_t sides_at, const Weights& weights) const;
   void fill_knot_rows(const KnotStep& step);
-  void eliminate_first(bool only_residual);
-  [[nodiscard]] std::array<double, 3> first_unknowns(const Operation& op,
-                                                     const Weights& weights,
-                                                     const std::array<double, kSlots>& now) const;
-  void undo(const Operation& op,
-            const Weights& weights,
-            std::array<double, kSlots>& now,
-            Solution& solution) const;
   std::size_t keep_rows(std::size_t count, std::size_t columns);
   void undo_knot(const Operation& op,
                  const Weights& weights,
@@ -127,15 +104,11 @@ class Elimination {
                  std::array<double, kSlots>& now,
                  Solution& solution) const;
 
-  /// Of the rows at a knot: three unknowns go.
-  [[nodiscard]] std::size_t knot_columns() const { return 3 + slots_; }
-
-  std::size_t slots_;
   std::size_t sides_;
   std::size_t padded_;  ///< sides, padded
   std::size_t stride_;
   bool keep_;
-  std::vector<double> factor_;  ///< a row for each unknown
+  std::vector<double> factor_;  ///< 9 rows
   std::vector<double> left_;    ///< of the rows at a knot or walk
   std::vector<double> tails_;   ///< right-hand sides of those whose unknowns go
   std::vector<Rotation> rotations_;

@@ -26,9 +26,6 @@ struct PassOptions {
   bool keep = false;       ///< for back substitution
   std::size_t probes = 0;  ///< random signs that ride along, after the columns
   const std::vector<double>* inflation = nullptr;  ///< of each row's sigma (outliers), or null
-  /// Variances of the poses' innovations are relative to all of the error that is new in a pose,
-  /// instead of to its white noise.
-  bool whole_pose_errors = false;
 };
 
 /// Innovations of wheels: that of reading k is in row k - 1.

@@ -28,7 +28,7 @@ class PassRunner {
         first_(obs.offsets()),
         gain_(wheel_row_gain(obs.wheel_model, obs.wheels_read, point.effects, {})),
         sides_(1 + columns.count() + options.probes),
-        elimination_(sides_, options.keep, noise.lasting.present()),
+        elimination_(sides_, options.keep),
         row_(elimination_.stride(), 0.0),
         walk_(2 * sides_, 0.0),
         knot_sides_(3 * sides_, 0.0) {
@@ -39,7 +39,6 @@ class PassRunner {
 
   Pass run() {
     const std::size_t intervals = trajectory_.knots() - 1;
-    if (noise_.lasting.present()) begin_errors();
     for (std::size_t j = 0; j < intervals; ++j) {
       const double end =
           j + 1 == intervals ? std::numeric_limits<double>::infinity() : trajectory_.knot_s(j + 1);
@@ -83,24 +82,16 @@ class PassRunner {
     const std::size_t row = first_[index_of(channel)] + k;
     double sigma = noise_.sigma(channel);
     if (options_.inflation != nullptr) sigma *= (*options_.inflation)[row];
-    for (std::size_t i = 0; i < elimination_.slots(); ++i) row_[i] /= sigma;
-    fill_sides(row_.data() + elimination_.slots(), channel, k, 1.0 / sigma, Probe::kRow, row);
-    keep(row, channel, t, sigma);
+    for (std::size_t i = 0; i < kSlots; ++i) row_[i] /= sigma;
+    fill_sides(row_.data() + kSlots, channel, k, 1.0 / sigma, Probe::kRow, row);
+    keep(row, channel, t);
   }
-  // Share of its white noise in the error that is new in a pose; 1 for other channels.
-  [[nodiscard]] double white_share(Channel channel, double sigma) const {
-    const std::size_t pose = index_of(Channel::kPoseAlong);
-    if (!options_.whole_pose_errors || index_of(channel) < pose) return 1.0;
-    const double added = new_error_[index_of(channel) - pose] / sigma;
-    return 1.0 / (1.0 + added * added);
-  }
-  void keep(std::size_t row, Channel channel, double t, double sigma = 1.0) {
-    const double variance = elimination_.measure(row_.data()) * white_share(channel, sigma);
+  void keep(std::size_t row, Channel channel, double t) {
+    const double variance = elimination_.measure(row_.data());
     if (variance > 0.0) {
       out_.of.push_back({row, index_of(channel), t, variance});
-      out_.values.insert(out_.values.end(),
-                         row_.begin() + static_cast<std::ptrdiff_t>(elimination_.slots()),
-                         row_.begin() + static_cast<std::ptrdiff_t>(elimination_.slots() + sides_));
+      out_.values.insert(out_.values.end(), row_.begin() + kSlots,
+                         row_.begin() + static_cast<std::ptrdiff_t>(kSlots + sides_));
     }
     std::fill(row_.begin(), row_.end(), 0.0);
   }
@@ -168,7 +159,7 @@ class PassRunner {
   void read_drift(std::size_t slot, Channel channel, double sigma, double t) {
     row_[slot] = 1.0 / sigma;
     for (std::size_t k = 0; k < options_.probes; ++k)
-      row_[elimination_.slots() + 1 + columns_.count() + k] =
+      row_[kSlots + 1 + columns_.count() + k] =
           probe_sign(Probe::kReading, 2 * wheel_ + (slot == kDrift ? 0 : 1), k);
     const std::size_t row = first_[index_of(channel)] + (wheel_ > 0 ? wheel_ - 1 : 0);
     keep(row, channel, t);
@@ -200,25 +191,8 @@ class PassRunner {
     measure(Channel::kSteering, steering_, t);
   }
 
-  // The errors of the poses from the last pose to this one.
-  void renew_errors(double t) {
-    if (!noise_.lasting.present()) return;
-    for (std::size_t i = 0; i < kErrors; ++i) new_error_[i] = noise_.lasting.sigma(i);
-    if (pose_ == 0) return;
-    const double passed = std::max(t - times_.poses[pose_ - 1], 0.0);
-    ErrorStep step;
-    for (std::size_t i = 0; i < kErrors; ++i) {
-      step.stays[i] = std::exp(-passed / noise_.lasting.time(i));
-      step.sigma[i] =
-          noise_.lasting.sigma(i) * std::sqrt(std::max(1.0 - step.stays[i] * step.stays[i], 1e-9));
-    }
-    new_error_ = step.sigma;
-    elimination_.renew_errors(step);
-  }
-
   void pose(std::size_t j) {
     const double t = times_.poses[pose_];
-    renew_errors(t);
     const IntervalJacobian d = interval_jacobian(trajectory_, j, since_knot(j, t));
     const double c = std::cos(d.state.heading);
     const double s = std::sin(d.state.heading);
@@ -227,29 +201,15 @@ class PassRunner {
       row_[kX] = by_x;
       row_[kY] = by_y;
       row_[kHeading] = by_x * d.x_by_heading + by_y * d.y_by_heading;
-      if (noise_.lasting.present()) {
-        row_[kErrorX] = by_x;
-        row_[kErrorY] = by_y;
-      }
       measure(channel, pose_, t);
     };
     direction(Channel::kPoseAlong, c, s);
     direction(Channel::kPoseAcross, -s, c);
     if (!obs_.poses_have_heading) return;
     row_[kHeading] = 1.0;
-    if (noise_.lasting.present()) row_[kErrorHeading] = 1.0;
     row_[kYawA] = d.hats.first;
     row_[kYawB] = d.hats.second;
     measure(Channel::kPoseHeading, pose_, t);
-  }
-
-  // The errors of the poses at the start.
-  void begin_errors() {
-    for (std::size_t i = 0; i < kErrors; ++i) {
-      row_[kErrorX + i] = 1.0 / noise_.lasting.sigma(i);
-      elimination_.measure(row_.data());
-      std::fill(row_.begin(), row_.end(), 0.0);
-    }
   }
 
   void advance(std::size_t j) {
@@ -293,7 +253,6 @@ class PassRunner {
   Elimination elimination_;
   std::vector<double> row_, walk_, knot_sides_;
   Innovations out_;
-  std::array<double, kErrors> new_error_{};  ///< of the current pose, beside its white noise
   std::size_t wheel_ = 0, gyro_ = 0, steering_ = 0, pose_ = 0;
 };
 

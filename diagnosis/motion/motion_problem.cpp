@@ -142,7 +142,7 @@ Projection MotionProblem::project(const CauseModel& model,
   const MotionModel motion = motion_model(model);
   Library library =
       build_library(obs_, motion.point, std::move(candidates), accepted_columns(obs_, motion));
-  const PassOptions options{false, 0, &motion.inflation, true};
+  const PassOptions options{false, 0, &motion.inflation};
   return {library.front, std::move(library.candidates),
           run_pass(obs_, motion.point, motion.noise, library.columns, options).innovations};
 }

@@ -13,32 +13,11 @@
 namespace roadbook {
 namespace {
 
-// Correlation of the errors of one pose and the next: of x, y and heading.
-std::array<double, 3> correlations_of(const Observations& obs, const MotionNoise& noise) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < obs.poses.size(); ++k)
-    steps.push_back(obs.poses[k].t_s - obs.poses[k - 1].t_s);
-  const double step = steps.empty() ? 0.0 : median(steps);
-  std::array<double, 3> r{};
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    const double lasting = noise.lasting.sigma(i) * noise.lasting.sigma(i);
-    const double white = i < 2
-                             ? 0.5 * (noise.pose[0] * noise.pose[0] + noise.pose[1] * noise.pose[1])
-                             : noise.pose[2] * noise.pose[2];
-    r[i] = std::exp(-step / noise.lasting.time(i)) * lasting / (lasting + white);
-  }
-  return r;
-}
-
-// Correlation of each pose's errors with the one before, all channels together: that of the noise
-// model (`modelled`, or null), or of the innovations.
-NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels,
-                            const std::array<double, 3>* modelled,
-                            double known) {
+// Lag-one correlation of the innovations, all pose channels together.
+NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels, double known) {
   double n = 0.0, r = 0.0, of_channels = 0.0;
   std::vector<double> each;
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    const std::vector<double>& e = channels[c];
+  for (const auto& e : channels) {
     if (e.size() < 50) continue;
     double lagged = 0.0, squares = 0.0;
     for (std::size_t i = 1; i < e.size(); ++i) {
@@ -46,7 +25,7 @@ NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels,
       squares += e[i] * e[i];
     }
     n += static_cast<double>(e.size());
-    each.push_back(modelled != nullptr ? (*modelled)[c] : lagged / std::max(squares, 1e-300));
+    each.push_back(lagged / std::max(squares, 1e-300));
     of_channels += 1.0;
   }
   if (n < 100.0) return noise_cause("poses.correlation", "1", 0.0, 0.0, 0.0);
@@ -77,7 +56,7 @@ void look_into_poses(const Observations& obs,
                      std::vector<NoiseCause>& all) {
   Columns none;
   const Innovations in =
-      run_pass(obs, model.point, model.noise, none, {false, 0, &model.inflation, true}).innovations;
+      run_pass(obs, model.point, model.noise, none, {false, 0, &model.inflation}).innovations;
   std::array<std::vector<VarianceSample>, 3> by_channel;
   std::array<std::vector<double>, 3> channels;
   for (std::size_t i = 0; i < in.of.size(); ++i) {
@@ -107,9 +86,7 @@ void look_into_poses(const Observations& obs,
   all.push_back(slopes.by_turn);
   for (VarianceSample& l : looks) l = slopes.without(l);
   all.push_back(pose_outliers(looks, known.outliers));
-  const auto modelled = correlations_of(obs, model.noise);
-  all.push_back(pose_correlation(channels, model.noise.lasting.present() ? &modelled : nullptr,
-                                 known.correlation));
+  all.push_back(pose_correlation(channels, known.correlation));
 }
 
 }  // namespace

@@ -18,7 +18,6 @@ namespace roadbook {
 namespace {
 
 constexpr int kNoiseIterations = 4;
-constexpr int kLastingIterations = 2;
 constexpr std::size_t kPassProbes = 4;
 
 // A mean that is off by its noise's scatter is inflated, not trusted: beyond five sigma lies one
@@ -142,6 +141,22 @@ std::vector<Accepted> allow_for_places(const Observations& obs,
   return places;
 }
 
+// Log likelihood of a drive up to a constant, with the catalogued effects integrated out under
+// their priors: fitted, they would absorb some of the noise.
+double likelihood(const Observations& obs, const MotionModel& model, const HeldEffects& s) {
+  const Innovations in =
+      run_pass(obs, model.point, model.noise, s.library.columns, {false, 0, &model.inflation})
+          .innovations;
+  const Normal normal = normal_equations(in, s.library.columns.count());
+  Eigen::MatrixXd held = normal.F;
+  held.diagonal() += s.precision;
+  const Eigen::LDLT<Eigen::MatrixXd> solver(held);
+  double twice = normal.u.dot(solver.solve(normal.u)) - normal.squares;
+  twice -= solver.vectorD().array().max(1e-300).log().sum();
+  for (const Innovation& i : in.of) twice -= std::log(i.variance);
+  return 0.5 * twice;
+}
+
 // Sideways slip hides in the scatter of poses, so that iterating creeps towards it for ever: the
 // likelihood says how large it is, at twice as much each time until it falls and then at the top of
 // the parabola through the best three. It counts as one standard error larger than that: of what
@@ -153,7 +168,7 @@ void choose_creep(const Observations& obs, MotionModel& model, const HeldEffects
   double without = 0.0, before = 0.0, best = 0.0, creep = kLeast;
   for (double next = kLeast; next < kMost; next *= 2.0) {
     trial.noise.creep_per_sqrt_m = next;
-    const double l = log_likelihood(obs, trial, s);
+    const double l = likelihood(obs, trial, s);
     if (next > kLeast && l <= best) {
       const double bend = 2.0 * best - before - l;
       if (creep > kLeast && bend > 0.0)
@@ -230,29 +245,11 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
     if (i == 2) choose_creep(obs, model, saturated);
   }
   const bool correlated = poses_are_correlated(obs, model, saturated, places, known_rows);
-  const bool lasting = correlated && !obs.poses_of_map;
-  if (lasting) {
-    model.inflation = known_rows;
-    // Motion and wheels were taken to be rough as the poses are: they begin as stated.
-    const std::array<double, 3> scatter = model.noise.pose;
-    const double least_gyro = model.noise.least_gyro_rad_s;
-    model.noise = stated;
-    model.noise.pose = scatter;
-    model.noise.least_gyro_rad_s = least_gyro;
-    model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, least_gyro);
-    begin_lasting_errors(obs, model);
-    for (int i = 0; i < kLastingIterations; ++i) {
-      if (i < 2) saturated = saturated_library(obs, model.point, places);
-      fit_lasting_errors(obs, model, saturated, i == 0);
-      renew_noise(obs, model, saturated, i + 1 == kLastingIterations);
-    }
-    choose_creep(obs, model, saturated);
-  }
   model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, stated.gyro_rad_s);
   model.noise.steering_rad = std::max(model.noise.steering_rad, stated.steering_rad);
   allow_for_correlated_steering(obs, model, places);
   model.noise = loosened(model.noise);
-  if (correlated && !lasting) allow_for_correlated_poses(obs, model, saturated);
+  if (correlated) allow_for_correlated_poses(obs, model, saturated);
   fit_model(obs, model, 3);
   return model;
 }

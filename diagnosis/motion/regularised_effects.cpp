@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 
 namespace roadbook {
 namespace {
@@ -65,25 +64,6 @@ std::vector<double> saturated_weights(const Normal& normal,
   for (Eigen::Index k = 0; k < size.size(); ++k)
     weights[1 + static_cast<std::size_t>(k)] = -size[k];
   return weights;
-}
-
-double log_likelihood(const Observations& obs, const MotionModel& model, const HeldEffects& s) {
-  const Innovations in =
-      run_pass(obs, model.point, model.noise, s.library.columns, {false, 0, &model.inflation})
-          .innovations;
-  const Normal normal = normal_equations(in, s.library.columns.count());
-  Eigen::MatrixXd held = normal.F;
-  held.diagonal() += s.precision;
-  const Eigen::LDLT<Eigen::MatrixXd> solver(held);
-  double twice = normal.u.dot(solver.solve(normal.u)) - normal.squares;
-  twice -= solver.vectorD().array().max(1e-300).log().sum();
-  for (const Innovation& i : in.of) {
-    const auto channel = static_cast<Channel>(i.channel);
-    const bool of_wheels = channel == Channel::kWheelDistance || channel == Channel::kWheelHeading;
-    const double row = of_wheels ? 1.0 : model.noise.sigma(channel);
-    twice -= std::log(i.variance * row * row);
-  }
-  return 0.5 * twice;
 }
 
 }  // namespace roadbook

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "diagnosis/motion/motion_library.hpp"
-#include "diagnosis/motion/motion_model.hpp"
 #include "diagnosis/streams/normal_equations.hpp"
 
 namespace roadbook {
@@ -27,12 +26,5 @@ struct HeldEffects {
 [[nodiscard]] std::vector<double> saturated_weights(const Normal& normal,
                                                     const HeldEffects& s,
                                                     const Innovations& in);
-
-/// Log likelihood of a drive at the model's residuals, with the effects integrated out under their
-/// priors: fitted, they would absorb some of the noise. Up to a constant and to the noise of the
-/// wheels.
-[[nodiscard]] double log_likelihood(const Observations& obs,
-                                    const MotionModel& model,
-                                    const HeldEffects& s);
 
 }  // namespace roadbook

@@ -25,7 +25,7 @@ void triangularise(double* left,
 
 /// Tails are a multiple of this long.
 inline constexpr std::size_t kTailBlock = 8;
-inline constexpr std::size_t kMostTails = 15;
+inline constexpr std::size_t kMostTails = 12;
 
 /// Applies rotations to tails of `length`; at most `kMostTails` of them.
 void rotate_tails(double* const* tails,

@@ -1,28 +1,11 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "diagnosis/streams/observations.hpp"
 
 namespace roadbook {
-
-/// Errors of reference poses that last: first-order Gauss-Markov processes of x and y (the same
-/// sigma and time) and of the heading, beside the white noise of each pose.
-struct LastingErrors {
-  double position_m = 0.0;  ///< standard deviation
-  double position_s = 1.0;  ///< correlation time
-  double heading_rad = 0.0;
-  double heading_s = 1.0;
-
-  [[nodiscard]] bool present() const { return position_m > 0.0 || heading_rad > 0.0; }
-  /// Of x (0), y (1) and heading (2); above 0.
-  [[nodiscard]] double sigma(std::size_t i) const {
-    return std::max(i < 2 ? position_m : heading_rad, 1e-6);
-  }
-  [[nodiscard]] double time(std::size_t i) const { return i < 2 ? position_s : heading_s; }
-};
 
 /// Standard deviations of the rows and of the process noise. They are estimated from the drive;
 /// stated values are only the start.
@@ -32,7 +15,6 @@ struct MotionNoise {
   double steering_rad = 2e-3;                    ///< of a window's mean
   double gyro_rad_s = 1e-3;                      ///< of a window's mean
   std::array<double, 3> pose{0.02, 0.02, 2e-3};  ///< along, across [m], heading [rad]
-  LastingErrors lasting;                         ///< of the poses
   // Random walks of the wheels and of lateral slip.
   double distance_per_sqrt_m = 0.01;
   double heading_per_sqrt_m = 0.003;

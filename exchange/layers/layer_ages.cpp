@@ -1,7 +1,10 @@
 #include "exchange/layers/layer_ages.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
+#include <vector>
 
 #include "exchange/layers/table_row.hpp"
 #include "mapping/layers/parse_utc.hpp"
@@ -18,6 +21,19 @@ std::vector<FieldValue> age_row(const AgedItem& item, std::int64_t now_ns) {
           item.half_life_s,
           item.weight(now_ns),
           std::int64_t{item.stale(now_ns) ? 1 : 0}};
+}
+
+bool is_row_of(const std::vector<FieldValue>& values, const std::string& item) {
+  return !values.empty() && values.front() == FieldValue(item);
+}
+
+// True for the rows that follow that of the raster in the order of `speeds`: later rasters, then
+// the speed map. The same work in another order of verbs gives the same table.
+bool is_after(const std::vector<FieldValue>& values, const std::string& raster) {
+  const auto own = std::find(std::begin(kRastersWithAge), std::end(kRastersWithAge), raster);
+  return is_row_of(values, "speed_map") ||
+         std::any_of(own, std::end(kRastersWithAge),
+                     [&](const char* later) { return is_row_of(values, later); });
 }
 
 }  // namespace
@@ -37,14 +53,14 @@ void write_raster_age(MapUpdate& update,
                       const AgedItem& raster,
                       std::int64_t now_ns) {
   PlainTable table = age_table({}, now_ns);
-  bool written = false;
-  if (before.has(kAgeTable))
-    for (const auto& values : before.read_table(kAgeTable).rows) {
-      const bool same = !values.empty() && values.front() == FieldValue(raster.name);
-      table.rows.push_back(same ? age_row(raster, now_ns) : values);
-      written = written || same;
-    }
-  if (!written) table.rows.push_back(age_row(raster, now_ns));
+  if (before.has(kAgeTable)) table.rows = before.read_table(kAgeTable).rows;
+  std::erase_if(table.rows, [&](const auto& values) { return is_row_of(values, raster.name); });
+  AgedItem written = raster;
+  written.date_ns = parse_utc(utc_text(raster.date_ns)).value_or(raster.date_ns);  // as read again
+  const auto place = std::find_if(table.rows.begin(), table.rows.end(), [&](const auto& values) {
+    return is_after(values, raster.name);
+  });
+  table.rows.insert(place, age_row(written, now_ns));
   update.write_table(table);
 }
 

@@ -14,7 +14,9 @@ namespace {
 
 constexpr int kCellPx = 64;  // evenness over the half-size image
 
-int share_of_rig(std::size_t cameras) { return cameras >= 4 ? 1 : 4 / static_cast<int>(cameras); }
+int share_of_rig(std::size_t cameras) {
+  return cameras >= 4 || cameras == 0 ? 1 : 4 / static_cast<int>(cameras);
+}
 
 // Accepts tracks while at least half of their images still need key points in that cell.
 class Quota {

@@ -155,19 +155,6 @@ TEST(HiddenEffects, ReferencePosesWhoseErrorsGoOnInventNothingAndWidenTheInterva
   EXPECT_NEAR(slow.causes[0].size, 0.01, width(slow));
 }
 
-// Errors of a reference that last 0.3 to 10 s (GNSS with or without an INS) look like many effects
-// of the motion: none is named. That the errors correlate may be said.
-TEST(HiddenEffects, ReferencesWhoseErrorsLastForSecondsRaiseNoAlarm) {
-  const std::uint64_t seed = seed_of_today();
-  for (const double time_s : {0.3, 1.0, 3.0, 10.0}) {
-    const HiddenDriveOptions options = drive_with_lasting_errors(time_s, seed);
-    const Diagnosis found = diagnose(streams_of(record_drive(options)), "lasting");
-    SCOPED_TRACE(std::to_string(time_s) + " s, " + std::to_string(options.pose_sigma_m) + " m");
-    EXPECT_TRUE(found.unknown.empty());
-    for (const FoundCause& cause : found.causes) EXPECT_EQ(cause.effect, "poses.correlation");
-  }
-}
-
 // The number of places where wheels may slip grows with the distance; the work for each does not.
 TEST(HiddenEffects, ProcessorTimeGrowsWithTheLengthAndNoFaster) {
   const auto streams_over = [](double length_m) {
