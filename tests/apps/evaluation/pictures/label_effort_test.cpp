@@ -41,8 +41,8 @@ Effort label_floor(std::uint64_t floor) {
 
 // The floors are worn and have cars on them: the first two floors that `evaluate labels` uses. The
 // test measures processor time, because other load on the machine changes it little, and takes the
-// shortest of the measurements. Both limits are stricter than the required elapsed times with two
-// cores.
+// shortest of the measurements. The limit of the search is stricter than the required elapsed time
+// with two cores. A further round is measured by the search of the same run: it keeps the features.
 TEST(LabelEffort, FourteenBoxesAndSixRoundsFindAlmostAllOf164SpacesWithoutWaiting) {
   double search_s = 1e9;
   double again_s = 1e9;
@@ -58,7 +58,7 @@ TEST(LabelEffort, FourteenBoxesAndSixRoundsFindAlmostAllOf164SpacesWithoutWaitin
   }
 #ifdef ROADBOOK_TIMED  // release builds
   EXPECT_LT(search_s, 5.0);
-  EXPECT_LT(again_s, 1.0);
+  EXPECT_LT(again_s, 0.4 * search_s);
 #endif
   RecordProperty("search_ms", static_cast<int>(1e3 * search_s));
   RecordProperty("again_ms", static_cast<int>(1e3 * again_s));
