@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/geometry/outline.hpp"
 #include "roadnet/prune.hpp"
 #include "roadnet/spatial_hash.hpp"
 #include "roadnet/trace_lanes.hpp"
@@ -93,14 +94,6 @@ bool merge_closest_intersections(RoadGraph& graph, double limit_m) {
   }
   if (!nodes.empty()) contract(graph, nodes);
   return !nodes.empty();
-}
-
-double distance_to_segment(const Eigen::Vector3d& p,
-                           const Eigen::Vector3d& a,
-                           const Eigen::Vector3d& b) {
-  const Eigen::Vector3d d = b - a;
-  const double along = d.squaredNorm() > 0.0 ? (p - a).dot(d) / d.squaredNorm() : 0.0;
-  return (a + std::clamp(along, 0.0, 1.0) * d - p).norm();
 }
 
 // Whether `p` is within reach of an edge that does not touch a flagged node.

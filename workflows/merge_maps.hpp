@@ -30,14 +30,15 @@ struct MergeResult {
   std::size_t sessions = 0;    ///< of the map now
   std::size_t keyframes = 0;
   std::size_t landmarks = 0;
-  std::size_t labels = 0;            ///< that came along
+  std::size_t labels = 0;            ///< copied from the other map
   std::vector<DroppedWork> dropped;  ///< layers and tables that do not fit the moved poses
   std::string digest;                ///< of the map
 };
 
 /// Adds the sessions of another map of the same place to a map (`merged_map`), with their labels.
-/// No recording is read. Other layers and tables of the other map stay there; those of the map stay
-/// as after an extension with the same `adjust`. The map is replaced when all is done.
+/// No recording is read. Other layers and tables of the other map are not copied. Those of the map
+/// stay as after an extension with the same `adjust`. The map file is replaced in one step at the
+/// end.
 ///
 /// Throws BadInput (names of sessions or drives that both have, a file that is no map), Refused (no
 /// overlap, maps of several pieces), StorageError, Interrupted. The map then is unchanged.

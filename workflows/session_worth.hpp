@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-/// What each session of a map is worth to the poses, labels and landmarks of the others
-/// (`session_values`). The middles of the labels on the ground are the points. A label whose image
-/// is no keyframe hangs on the nearest one of its session.
+/// The value of each session for the poses, labels and landmarks of the others (`session_values`).
+/// The points are the middles of the labels on the ground. A label moves with the keyframe of its
+/// session that is nearest in time.
 [[nodiscard]] std::vector<SessionValue> worth_of_sessions(const Map& map,
                                                           const std::vector<Label>& labels);
 

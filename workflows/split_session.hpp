@@ -20,17 +20,17 @@ struct SplitResult {
   std::size_t keyframes = 0;
   std::size_t landmarks = 0;
   std::size_t observations = 0;
-  std::size_t labels = 0;  ///< that came along
+  std::size_t labels = 0;  ///< copied
   int pieces = 1;
   std::string digest;  ///< of the new map
 };
 
 /// Writes a session of a map, or its part between two times, as a separate map
-/// (`map_of_session`). The map is only read: nothing leaves it. Labels on images of the part, and
-/// what it saw of them, come along; other layers and tables do not.
+/// (`map_of_session`). The map is only read. Labels on images of the part are copied; other layers
+/// and tables are not.
 ///
-/// Throws InvalidOption (no such session, times that are no times, an output that exists), Refused
-/// (too little for a map), BadInput, StorageError. There is no output then.
+/// Throws InvalidOption (no such session, times that cannot be read, an output that exists),
+/// Refused (too little for a map), BadInput, StorageError. There is no output then.
 SplitResult split_session(const SplitRequest& request);
 
 }  // namespace roadbook

@@ -8,7 +8,7 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kNoTruth = "unknown: no true surfaces at hand";
+constexpr const char* kNoTruth = "unknown: no true surfaces";
 
 std::string share_text(double share, int digits = 1) { return fixed(100.0 * share, digits) + " %"; }
 

@@ -15,7 +15,7 @@ void print_split(const Console& console,
               std::to_string(result.labels) + " labels");
   if (result.pieces > 1)
     console.say(std::to_string(result.pieces) +
-                " pieces: only other sessions join them, other commands refuse the map");
+                " pieces, which only other sessions join: other commands refuse this map");
   console.say("map: " + output.string());
   console.result({{"session", result.session},
                   {"keyframes", result.keyframes},
@@ -41,7 +41,7 @@ void print_merge(const Console& console,
   console.warn(dropped_warnings(result.dropped, map));
   console.say(std::to_string(result.sessions) + " sessions, " + std::to_string(result.keyframes) +
               " keyframes, " + std::to_string(result.landmarks) + " landmarks; " +
-              std::to_string(result.labels) + " labels came along");
+              std::to_string(result.labels) + " labels copied");
   console.say("map: " + map.string());
   console.result({{"came", came},
                   {"sessions", result.sessions},

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "base/geometry/outline.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 #include "semantics/labels/label_check.hpp"
 
@@ -17,19 +18,10 @@ using Corners = std::vector<Eigen::Vector2d>;
 
 constexpr double kLeastToleranceM = 1e-3;
 
-double distance_to_side(const Eigen::Vector2d& p,
-                        const Eigen::Vector2d& a,
-                        const Eigen::Vector2d& b) {
-  const Eigen::Vector2d along = b - a;
-  const double length2 = along.squaredNorm();
-  const double share = length2 > 0.0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - share * along).norm();
-}
-
 double distance_to_outline(const Eigen::Vector2d& p, const Corners& outline) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < outline.size(); ++i)
-    least = std::min(least, distance_to_side(p, outline[i], outline[(i + 1) % outline.size()]));
+    least = std::min(least, distance_to_segment(p, outline[i], outline[(i + 1) % outline.size()]));
   return least;
 }
 
@@ -51,7 +43,7 @@ void keep_corners(const Corners& c,
   double largest = tolerance_m;
   std::size_t at = first;
   for (std::size_t i = (first + 1) % n; i != last; i = (i + 1) % n)
-    if (const double d = distance_to_side(c[i], c[first], c[last]); d > largest) {
+    if (const double d = distance_to_segment(c[i], c[first], c[last]); d > largest) {
       largest = d;
       at = i;
     }

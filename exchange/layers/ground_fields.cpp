@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kWantGrid = "an occupancy grid (roadbook occupancy writes it)";
 
-// The values of a raster from the least y, NaN where there is none.
+// The values of a raster from the least y. Cells without a value are NaN.
 std::vector<float> upward_values(const MapLayers& layers,
                                  const std::string& name,
                                  const RasterInfo& like) {

@@ -155,8 +155,8 @@ std::vector<Eigen::Isometry3d> relaxed_with_edits(const Map& map,
   graph.T_map_vehicle = before;
   place_pieces(map, terms.motions, graph.T_map_vehicle);
   graph.odometry = steps;
-  // Neither accepted loops nor edits may be switched off. Contradictions between them are found in
-  // the result.
+  // No accepted loop and no edit may be switched off. `contradicted` finds those that the result
+  // contradicts.
   graph.loops = loops;
   graph.loops.insert(graph.loops.end(), terms.motions.begin(), terms.motions.end());
   if (!terms.anchors.empty()) {

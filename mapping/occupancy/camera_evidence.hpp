@@ -11,10 +11,10 @@
 
 namespace roadbook {
 
-// Free space from cameras alone. A landmark on the ground shows that nothing stands where its line
-// of sight runs lower than the lowest obstacle. A raised landmark shows that something stands in
-// its own cell, and nothing else: its line of sight passes above the ground. Each cell counts
-// sights of both kinds. How much a sight says follows from the counts of all cells.
+// Free space from cameras alone. Where the line of sight to a landmark on the ground is lower than
+// the lowest obstacle, the cells are free. The cell of a raised landmark is occupied; its line of
+// sight passes above the ground and gives no evidence. Each cell counts sights of both kinds. The
+// counts of all cells determine how much a sight changes a cell.
 
 /// The images of one keyframe.
 struct SightKeyframe {

@@ -159,20 +159,13 @@ void extend_from(const std::vector<Drive>& drives,  // one
     return 0;
   });
   const Map extended = clock.run("assemble", [&] {
-    Session session = session_of(drive, car, options, map_path);
-    // Without a scale of its own, the drive has that of the landmarks in which it was localised.
-    session.scale_source = map.sessions.front().scale_source;
-    session.scale_sigma = map.sessions.front().scale_sigma;
-    set_scale(adjusted, map.sessions.size(), has_wheels ? std::nullopt : ground_sigma, session);
-    if (auto doubt = doubt_of_wheel_scale(session, options.bundle.wheel_scale_sigma, folder))
-      summary.warnings.push_back(std::move(*doubt));
-    session.localised_share = placed.localised_share();
-    Map assembled = extended_map(map, session, joined, placed, adjusted, options);
-    for (std::size_t s = 0; s < map.sessions.size(); ++s)
-      if (options.adjust == SessionAdjust::kAll && adjusted.stage.scale_of_session[s] >= 0)
-        set_scale(adjusted, s, std::nullopt, assembled.sessions[s]);
-    return assembled;
+    const Session session = session_of(drive, car, options, map_path);
+    return extended_map(map, session, joined, placed, adjusted, options,
+                        has_wheels ? std::nullopt : ground_sigma);
   });
+  if (auto doubt =
+          doubt_of_wheel_scale(extended.sessions.back(), options.bundle.wheel_scale_sigma, folder))
+    summary.warnings.push_back(std::move(*doubt));
   count_contents(extended, summary);
   add_reprojection(adjusted.result, summary);
   if (options.equal_rows) summary.rows = adjusted.rows;

@@ -300,6 +300,22 @@ void place_loops(const PlacedSession& placed,
   }
 }
 
+void set_scales(const Map& map,
+                const PlacedSession& placed,
+                const Adjusted& adjusted,
+                const MapOptions& options,
+                const std::optional<double>& ground_sigma,
+                Map& extended) {
+  Session& session = extended.sessions.back();
+  session.scale_source = map.sessions.front().scale_source;
+  session.scale_sigma = map.sessions.front().scale_sigma;
+  set_scale(adjusted, map.sessions.size(), ground_sigma, session);
+  session.localised_share = placed.localised_share();
+  for (std::size_t s = 0; s < map.sessions.size(); ++s)
+    if (options.adjust == SessionAdjust::kAll && adjusted.stage.scale_of_session[s] >= 0)
+      set_scale(adjusted, s, std::nullopt, extended.sessions[s]);
+}
+
 }  // namespace
 
 Map extended_map(const Map& map,
@@ -307,9 +323,11 @@ Map extended_map(const Map& map,
                  const JoinedSession& joined,
                  const PlacedSession& placed,
                  const Adjusted& adjusted,
-                 const MapOptions& options) {
+                 const MapOptions& options,
+                 const std::optional<double>& ground_sigma) {
   Map extended = map;
   extended.sessions.push_back(session);
+  set_scales(map, placed, adjusted, options, ground_sigma, extended);
   place_keyframes(map, joined, placed, adjusted, extended);
   const ExtendedTracks tracks = place_landmarks(map, joined, adjusted, options, extended);
   place_corners(map, joined, adjusted, tracks, options, extended);

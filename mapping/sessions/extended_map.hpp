@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "mapping/map.hpp"
 #include "mapping/pipeline/map_options.hpp"
 #include "mapping/pipeline/map_stages.hpp"
@@ -8,7 +10,9 @@
 
 namespace roadbook {
 
-/// The map with a further session. The caller completes its `session`.
+/// The map with a further session. `ground_sigma`: of the session's scale by the height of its
+/// cameras; empty if that was not used. A session without a scale of its own has the scale of the
+/// landmarks in which it was localised.
 ///
 /// Map frames stay as they are. A keyframe of the session gets the nearest map frame of its piece
 /// within 2 m; farther away from all map frames, its own pose becomes one. Poses and landmarks that
@@ -19,7 +23,8 @@ namespace roadbook {
                                const JoinedSession& joined,
                                const PlacedSession& placed,
                                const Adjusted& adjusted,
-                               const MapOptions& options);
+                               const MapOptions& options,
+                               const std::optional<double>& ground_sigma = std::nullopt);
 
 /// The map without a further session, after poses and tracks of its own were adjusted (those of
 /// `joined`, which has no keyframe beyond the map's). What did not move keeps its numbers.

@@ -44,7 +44,7 @@ StoredDrive stored_drive(const Map& other, int session) {
   return drive;
 }
 
-// Loops of the session that the map does not tell already.
+// Adds the loops of the session that localisation has not found.
 void add_own_loops(const Map& part, PlacedSession& placed) {
   const auto is_known_loop = [&](const LoopEdge& edge) {
     return std::any_of(placed.loops.begin(), placed.loops.end(), [&](const LoopClosure& loop) {
@@ -91,17 +91,7 @@ Map with_session(const Map& map,
       join_session(map, drive.stored.input, placed, options, drive.stored.same);
   Adjusted adjusted = adjust_session(joined, map, options, progress);
   add_covariances_of_session(joined, {}, options, adjusted);
-  Session session = drive.of_map();
-  // A session without wheels has the scale of the landmarks in which it was localised.
-  session.scale_source = map.sessions.front().scale_source;
-  session.scale_sigma = map.sessions.front().scale_sigma;
-  set_scale(adjusted, map.sessions.size(), std::nullopt, session);
-  session.localised_share = placed.localised_share();
-  Map merged = extended_map(map, session, joined, placed, adjusted, options);
-  for (std::size_t s = 0; s < map.sessions.size(); ++s)
-    if (options.adjust == SessionAdjust::kAll && adjusted.stage.scale_of_session[s] >= 0)
-      set_scale(adjusted, s, std::nullopt, merged.sessions[s]);
-  return merged;
+  return extended_map(map, drive.of_map(), joined, placed, adjusted, options);
 }
 
 std::string names_of(const std::vector<StoredDrive>& drives) {

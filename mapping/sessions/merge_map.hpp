@@ -28,7 +28,7 @@ struct MergedMap {
 /// Each session comes as a drive extends a map (`extend_map`), with the stored observations,
 /// corners and descriptors in place of images and its poses in `other` as odometry: its keyframes
 /// are localised, the pose graph is relaxed, landmarks are joined, and the map is adjusted as
-/// `MapOptions::adjust` says. Loops within a session come along. The session with the largest share
+/// `MapOptions::adjust` says. Loops within a session are kept. The session with the largest share
 /// of localised keyframes comes first, so that a session without overlap with `map` may join it by
 /// another one of `other`.
 ///

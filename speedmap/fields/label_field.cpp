@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/geometry/outline.hpp"
 
 namespace roadbook {
 namespace {
@@ -31,9 +32,7 @@ LabelAt signed_distance(const LabelledOutline& label, const Eigen::Vector2d& p) 
       away = from;
       edge = ab;
     }
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * ab.x())
-      inside = !inside;
+    if (ray_crosses(p, a, b)) inside = !inside;
   }
   const double distance = std::sqrt(nearest);
   LabelAt at{&label, inside ? -distance : distance, Eigen::Vector2d::Zero()};

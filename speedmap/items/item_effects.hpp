@@ -9,16 +9,18 @@
 
 namespace roadbook {
 
-// What the items of a place do to its speeds. The weight w of an item is the probability that the
+// The effect of items on the speeds of a place. The weight w of an item is the probability that the
 // item still holds. As for the presence of people [metric-semantic maps, sec. V-C], the recommended
-// speed is linear in that probability: w v_item + (1 - w) v_without. Friction likewise: f = 1 - w
-// (1 - f_item).
+// speed is linear in that probability:
+//     v = w v_item + (1 - w) v_without
+// The factor of friction is linear as well:
+//     f = w f_item + (1 - w)
 
 /// The effect of all items at a point.
 struct EffectAt {
   double speed = 0.0;  ///< [m/s]; infinite: no item slows
-  double sigma =
-      0.0;  ///< of that speed, because the item may have ended: sqrt(w (1 - w)) difference
+  /// Of that speed, because the item may have ended: sqrt(w (1 - w)) |v_item - v_without|.
+  double sigma = 0.0;
   double grip_factor = 1.0;  ///< of friction; the least of all items
 };
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/geometry/outline.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -15,25 +17,12 @@ constexpr double kDay_s = 86400.0;
 constexpr std::array<std::pair<ItemShape, const char*>, 3> kShapes{
     {{ItemShape::kPoint, "point"}, {ItemShape::kLine, "line"}, {ItemShape::kPolygon, "polygon"}}};
 
-double distance_to_segment(const Eigen::Vector2d& p,
-                           const Eigen::Vector2d& a,
-                           const Eigen::Vector2d& b) {
-  const Eigen::Vector2d ab = b - a;
-  const double length = ab.squaredNorm();
-  const double t = length > 0.0 ? std::clamp((p - a).dot(ab) / length, 0.0, 1.0) : 0.0;
-  return (p - a - t * ab).norm();
-}
-
-// By the rule of even and odd, so that a ring within a ring is a hole.
+// A ring within a ring is a hole.
 bool is_in_rings(const Eigen::Vector2d& p, const std::vector<std::vector<Eigen::Vector2d>>& rings) {
-  bool inside = false;
-  for (const auto& ring : rings)
-    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
-      if ((ring[i].y() > p.y()) != (ring[j].y() > p.y()) &&
-          p.x() < ring[j].x() + (p.y() - ring[j].y()) / (ring[i].y() - ring[j].y()) *
-                                    (ring[i].x() - ring[j].x()))
-        inside = !inside;
-  return inside;
+  return std::count_if(rings.begin(), rings.end(),
+                       [&](const auto& ring) { return is_inside(ring, p); }) %
+             2 ==
+         1;
 }
 
 }  // namespace

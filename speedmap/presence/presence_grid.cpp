@@ -5,31 +5,13 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/geometry/outline.hpp"
 #include "base/require_option.hpp"
 
 namespace roadbook {
 namespace {
 
 constexpr signed char kNone = -1;
-
-bool inside(const Outline& outline, const Eigen::Vector2d& p) {
-  bool in = false;
-  for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
-    const Eigen::Vector2d& a = outline[i];
-    const Eigen::Vector2d& b = outline[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
-      in = !in;
-  }
-  return in;
-}
-
-double distance(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const Eigen::Vector2d way = b - a;
-  const double length2 = way.squaredNorm();
-  const double u = length2 > 0.0 ? std::clamp((p - a).dot(way) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - u * way).norm();
-}
 
 }  // namespace
 
@@ -102,7 +84,7 @@ void PresenceGrid::paint_lane(const GridLane& lane, std::vector<signed char>& cl
       for (int column = c0; column <= c1; ++column) {
         const Eigen::Vector2d centre =
             low_ + options_.cell_m * Eigen::Vector2d(column + 0.5, row + 0.5);
-        const double d = distance(centre, a, b);
+        const double d = distance_to_segment(centre, a, b);
         signed char& now =
             classes[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                     static_cast<std::size_t>(column)];
@@ -130,7 +112,7 @@ void PresenceGrid::paint_outline(const Outline& outline,
   const int r1 = std::min(rows_ - 1, static_cast<int>((high.y() - low_.y()) / options_.cell_m));
   for (int row = r0; row <= r1; ++row)
     for (int column = c0; column <= c1; ++column)
-      if (inside(outline, low_ + options_.cell_m * Eigen::Vector2d(column + 0.5, row + 0.5)))
+      if (is_inside(outline, low_ + options_.cell_m * Eigen::Vector2d(column + 0.5, row + 0.5)))
         classes[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                 static_cast<std::size_t>(column)] = static_cast<signed char>(place);
 }

@@ -26,8 +26,8 @@ Landmark landmark_at(const Eigen::Vector3d& p, bool ground) {
   return landmark;
 }
 
-// A car that drives along x on even ground, with a camera 1.2 m above it. Each keyframe sees all
-// landmarks, of which `raised` are obstacles at one place. The map frame is turned by 90 degrees: x
+// A car drives along x on even ground, with a camera 1.2 m above it. Each keyframe sees all
+// landmarks; `raised` of them are obstacles at one place. The map frame is turned by 90 degrees: x
 // of the frame is y of the map.
 Map even_road(int raised = 1) {
   Map map;

@@ -4,6 +4,7 @@
 
 #include "exchange/export/geo_origin.hpp"
 #include "exchange/import/item_file.hpp"
+#include "exchange/import/json_fields.hpp"
 #include "exchange/layers/item_table.hpp"
 #include "exchange/layers/layer_ages.hpp"
 #include "mapping/store/map_file.hpp"
@@ -21,6 +22,8 @@ bool is_same(const LayerItem& a, const LayerItem& b) {
 std::vector<LayerItem> new_items(const ItemsRequest& request, ItemsResult& result) {
   std::vector<LayerItem> fresh;
   if (request.put.empty()) return fresh;
+  // A file that cannot be read is named first, before an origin that is missing.
+  (void)read_json_file(request.put, "items of layers");
   std::optional<GeoOrigin> origin;
   if (!request.map_coordinates) {
     ExportOptions place;

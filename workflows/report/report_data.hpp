@@ -37,7 +37,7 @@ struct ReportData {
   std::optional<GroundPicture> overhead;
   std::optional<RoadNetwork> network;         ///< as stored in the map
   RoadNetworkStages stages_of_network;        ///< recomputed for the pictures
-  std::optional<SpeedReport> speeds;          ///< empty if the map has neither speeds nor friction
+  std::optional<SpeedReport> speeds;          ///< empty without speeds and friction
   std::optional<OccupancyDemands> occupancy;  ///< empty if the map has no occupancy grid
   std::optional<LabelReport> labels;          ///< empty if the map has no labels
   std::vector<SessionValue> value;  ///< of its sessions for each other; empty for one session

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "base/geometry/outline.hpp"
 #include "exchange/export/nav2/seen_ground.hpp"
 #include "exchange/export/nav2/space_entry.hpp"
 
@@ -101,16 +102,6 @@ Eigen::AlignedBox2d extent_of(const PlannerMap& planner,
   return {box.min().array() - resolution_m, box.max().array() + resolution_m};
 }
 
-bool is_in_ring(const Ring& ring, const Eigen::Vector2d& p) {
-  bool inside = false;
-  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
-    if ((ring[i].y() > p.y()) != (ring[j].y() > p.y()) &&
-        p.x() < ring[i].x() + (p.y() - ring[i].y()) / (ring[j].y() - ring[i].y()) *
-                                  (ring[j].x() - ring[i].x()))
-      inside = !inside;
-  return inside;
-}
-
 // Cells about which free ground reaches half the vehicle's width, as far as they hang together with
 // those of a lane.
 MaskGrid reached_cells(const PlannerMap& planner, double width_m, const MaskGrid& grid) {
@@ -163,7 +154,7 @@ std::vector<std::string> cut_off_spaces(const PlannerMap& planner,
     for (int row = grid.row_of(box.max().y()); row <= grid.row_of(box.min().y()); ++row)
       for (int c = grid.column_of(box.min().x()); c <= grid.column_of(box.max().x()); ++c)
         found = found ||
-                (reached.cells()[grid.index(c, row)] != 0 && is_in_ring(ring, grid.centre(c, row)));
+                (reached.cells()[grid.index(c, row)] != 0 && is_inside(ring, grid.centre(c, row)));
     if (!found) ids.push_back(space.id);
   }
   return ids;

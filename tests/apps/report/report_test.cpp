@@ -127,7 +127,7 @@ TEST_F(Report, ClosesEveryTagItOpens) {
   EXPECT_TRUE(open.empty());
 }
 
-// A grid of two cells that hangs on the first keyframe, without a truth.
+// Writes a grid of two cells, stored relative to the first keyframe. The map has no truth.
 void write_two_cells(const std::filesystem::path& map) {
   StoredOccupancy stored;
   stored.prior = 0.3;  // the cell without a change of its log odds is undecided
@@ -171,7 +171,7 @@ TEST_F(Report, ScoresTheGridAgainstTheSevenDemands) {
   const std::string page = report_page(data);
   for (const char* demand :
        {"1 complete", "2 compact", "3 real time", "4 suppresses detail", "5 free space",
-        "6 moving things", "7 uncertainty", "unknown: no true surfaces at hand", "&lt;drive&gt;"})
+        "6 moving things", "7 uncertainty", "unknown: no true surfaces", "&lt;drive&gt;"})
     EXPECT_NE(page.find(demand), std::string::npos) << demand;
 }
 

@@ -212,7 +212,12 @@ TEST_F(LayersVerb, BadInputIsOneLineAndLeavesTheMapAsItWas) {
           "features: got none, want at least one item");
   refused({{"type", "Point"}}, "type: got \"Point\", want FeatureCollection");
   EXPECT_EQ(digest(), before);
-  EXPECT_EQ(run("roadbook layers -m place.gpkg --put none.geojson --map-coordinates").status, 2);
+  for (const char* coordinates : {" --map-coordinates", ""}) {
+    const auto missing =
+        run(std::string("roadbook layers -m place.gpkg --put none.geojson") + coordinates);
+    EXPECT_EQ(missing.status, 2);
+    EXPECT_TRUE(missing.err.starts_with("error: none.geojson: ")) << missing.err;
+  }
   EXPECT_EQ(run("roadbook layers -m none.gpkg").status, 2);
   const auto time = run("roadbook layers -m place.gpkg --now yesterday");
   EXPECT_EQ(time.status, 1);
