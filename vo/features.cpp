@@ -1,12 +1,13 @@
 #include "vo/features.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <opencv2/features2d.hpp>
+#include <opencv2/core/types.hpp>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "base/error.hpp"
+#include "vo/brisk_description.hpp"
 #include "vo/corners.hpp"
 
 namespace roadbook {
@@ -47,18 +48,6 @@ std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> found,
   return kept;
 }
 
-// Size that BRISK's own detector gives a corner of its finest scale.
-constexpr float kBriskSizePx = 12.0F;
-
-// Making a BRISK object costs 50 ms and 47 MB of pattern tables, so it is made once; describing
-// only reads them. Its detector is not used: it computes the direction of every raw corner before
-// the strongest are chosen, and describing computes it again (20 times the time for the same
-// corners).
-cv::BRISK& describer() {
-  static const cv::Ptr<cv::BRISK> brisk = cv::BRISK::create(30, 0);
-  return *brisk;
-}
-
 }  // namespace
 
 void FeatureOptions::check() const {
@@ -77,20 +66,17 @@ Features detect_features(const cv::Mat& half_image,
     kept = spread_evenly(find_corners(half_image, threshold), half_image, mask, options);
     if (static_cast<int>(kept.size()) > options.max_features / 3) break;
   }
-  for (auto& k : kept) {
-    k.pt = refine_corner(half_image, k.pt);
-    k.size = kBriskSizePx;
-  }
-  cv::Mat described;
-  describer().compute(half_image, kept, described);
+  std::vector<cv::Point2f> corners;
+  corners.reserve(kept.size());
+  for (const cv::KeyPoint& k : kept) corners.push_back(refine_corner(half_image, k.pt));
+  DescribedCorners described = describe_corners(half_image, corners);
   Features features;
-  features.pixels.reserve(kept.size());
-  features.descriptors.resize(kept.size());
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    features.pixels.emplace_back(kept[i].pt.x, kept[i].pt.y);
-    std::memcpy(features.descriptors[i].data(), described.ptr(static_cast<int>(i)),
-                sizeof(Descriptor));
+  features.pixels.reserve(described.corners.size());
+  for (const int i : described.corners) {
+    const cv::Point2f& corner = corners[static_cast<std::size_t>(i)];
+    features.pixels.emplace_back(corner.x, corner.y);
   }
+  features.descriptors = std::move(described.descriptors);
   return features;
 }
 

@@ -1,6 +1,5 @@
 #include "speedmap/presence/presence_map.hpp"
 
-#include <Eigen/CholmodSupport>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -84,19 +83,6 @@ Eigen::SparseMatrix<double> PresenceMap::matrix() const {
   Eigen::SparseMatrix<double> A(n, n);
   A.setFromTriplets(entries.begin(), entries.end());
   return A;
-}
-
-void PresenceMap::solve() {
-  // Minimum degree: for a million places 0.6 s of ordering and 4.2 s of factor, where nested
-  // dissection takes 4.7 s and 3.4 s.
-  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholesky;
-  cholesky.cholmod().nmethods = 1;
-  cholesky.cholmod().method[0].ordering = CHOLMOD_AMD;
-  cholesky.compute(matrix());
-  ROADBOOK_ASSERT(cholesky.info() == Eigen::Success);  // diagonally dominant by check()
-  x_ = cholesky.solve(b_);
-  touched_.clear();
-  error_bound_ = 0.0;
 }
 
 double PresenceMap::energy(const Eigen::VectorXd& x) const {

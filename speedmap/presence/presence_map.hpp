@@ -15,7 +15,8 @@ struct PresenceUpdate {
 };
 
 /// The dynamic map [metric-semantic maps, section V-C]: the x that minimises E(x) of a
-/// PresenceGraph, in one sparse Cholesky factorisation.
+/// PresenceGraph, by conjugate gradients, or by one sparse Cholesky factorisation where those would
+/// need many steps.
 ///
 /// The matrix is an M-matrix, so x stays between the smallest and the largest of priors and
 /// observations. Deterministic: one thread. Const members may run concurrently.
@@ -32,7 +33,7 @@ class PresenceMap {
   /// unchanged.
   void add(std::span<const PresenceObservation> observations);
 
-  /// Solves for all nodes (CHOLMOD, supernodal).
+  /// Solves for all nodes: no node is wrong by more than 1e-12 and rounding.
   void solve();
   /// Solves in a window around the observations added since the last call, with the other nodes
   /// held fixed. Widens the window until the residual at its border proves that no node is wrong by
@@ -62,6 +63,8 @@ class PresenceMap {
     double weight;
   };
   void prepare();
+  void solve_by_factor();
+  [[nodiscard]] bool solve_by_gradients();
   [[nodiscard]] std::span<const Neighbour> neighbours(int node) const;
   [[nodiscard]] double residual(int node) const;
   [[nodiscard]] std::vector<int> window(int hops) const;

@@ -49,5 +49,35 @@ TEST(Descriptor, NearestKnowsTheRunnerUp) {
   EXPECT_EQ(nearest_descriptor(query, {}).index, -1);
 }
 
+// Sets of every small size, in which some differ from the query in few bits and some are equal to
+// each other: the first of equal ones is the nearest, and another one the second.
+TEST(Descriptor, TheNearestOfAnyNumberIsThatOfPlainCounting) {
+  Random random(3);
+  for (int round = 0; round < 400; ++round) {
+    const auto size = static_cast<std::size_t>(round % 23);
+    const Descriptor query = random_descriptor(random);
+    std::vector<Descriptor> all;
+    for (std::size_t i = 0; i < size; ++i) {
+      all.push_back(random.uniform() < 0.5 ? query : random_descriptor(random));
+      if (random.uniform() < 0.3) all.back() = all[random.below(all.size())];
+      const std::uint64_t changed = random.below(4);
+      for (std::uint64_t k = 0; k < changed; ++k) all.back()[random.below(64)] ^= 0x11;
+    }
+    NearestDescriptor want;
+    for (std::size_t i = 0; i < size; ++i) {
+      const int distance = slow_hamming(query, all[i]);
+      if (distance < want.distance) {
+        want = {static_cast<int>(i), distance, want.distance};
+      } else if (distance < want.second) {
+        want.second = distance;
+      }
+    }
+    const auto near = nearest_descriptor(query, all);
+    EXPECT_EQ(near.index, want.index) << size;
+    EXPECT_EQ(near.distance, want.distance) << size;
+    EXPECT_EQ(near.second, want.second) << size;
+  }
+}
+
 }  // namespace
 }  // namespace roadbook

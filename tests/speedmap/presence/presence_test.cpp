@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -130,6 +131,25 @@ TEST(Presence, TheSparseSolveIsTheDenseOneAndStaysWithinItsData) {
     const Eigen::VectorXd variances = map.variances();
     const Eigen::VectorXd dense = A.inverse().diagonal();
     EXPECT_LT((variances - dense).cwiseQuotient(dense).cwiseAbs().maxCoeff(), 1e-10) << seed;
+  }
+}
+
+// A lattice too large for the factor: Eigen's own factor judges. The weak priors of the second need
+// more steps than conjugate gradients may take.
+TEST(Presence, ManyPlacesAreSolvedAsAFactorSolvesThem) {
+  for (const double prior_weight : {1.0, 1e-7}) {
+    Random random(5, "many");
+    const int side = 80;
+    PresenceGraph graph = square(side, 0.1, 1.0, 2.25);
+    for (PresenceNode& node : graph.nodes)
+      node = {random.uniform(), prior_weight * random.uniform(0.5, 2.0)};
+    for (PresenceEdge& edge : graph.edges) edge.weight *= std::pow(10.0, random.uniform(-1.0, 1.0));
+    PresenceMap map(graph);
+    map.add(random_observations(random, side * side, prior_weight < 1.0 ? 3 : side * side));
+    map.solve();
+    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor(map.matrix());
+    const Eigen::VectorXd x = factor.solve(map.right_hand_side());
+    EXPECT_LT((map.presence() - x).cwiseAbs().maxCoeff(), prior_weight < 1.0 ? 1e-7 : 2e-12);
   }
 }
 
