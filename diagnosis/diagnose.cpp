@@ -6,6 +6,7 @@
 #include "diagnosis/inference/extended_model.hpp"
 #include "diagnosis/known_causes.hpp"
 #include "diagnosis/motion/grammar.hpp"
+#include "diagnosis/reckoning_error.hpp"
 #include "diagnosis/stream_checks.hpp"
 #include "diagnosis/streams/coarse_readings.hpp"
 #include "diagnosis/streams/motion_prediction.hpp"
@@ -78,6 +79,7 @@ Diagnosis diagnose(const MotionStreams& streams,
   d.length_m = prepared.length_m;
   note_beyond_known(options.known, d);
   add_known(options.known, d);
+  add_reckoning(prepared.problem->observations(), options.known, d);
   return d;
 }
 

@@ -1,6 +1,7 @@
 #include "apps/report/diagnosis_page.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 
@@ -25,15 +26,41 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+std::string capitalised(std::string text) {
+  if (!text.empty())
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
+// Code between backticks, the rest escaped.
+std::string with_code(const std::string& text) {
+  std::string html;
+  bool code = false;
+  std::size_t begin = 0;
+  for (std::size_t tick = text.find('`'); tick != std::string::npos; tick = text.find('`', begin)) {
+    html += escaped(text.substr(begin, tick - begin)) + (code ? "</code>" : "<code>");
+    code = !code;
+    begin = tick + 1;
+  }
+  return html + escaped(text.substr(begin)) + (code ? "</code>" : "");
+}
+
+std::string folded(const std::string& title, const std::string& body) {
+  return "<details><summary>" + escaped(title) + "</summary>\n" + body + "</details>\n";
+}
+
 std::string section(const std::string& title, const std::string& body) {
   return "<section><h2>" + escaped(title) + "</h2>\n" + body + "</section>\n";
 }
 
 std::string figure(const EvidencePlot& plot) {
   if (plot.bins.empty()) return "";
-  return "<figure>" + evidence_svg(plot) + "<figcaption>Mean residuals of " +
-         escaped(plot.channel) + " [standard deviations] against " + escaped(plot.covariate) +
-         ": orange before, blue after; the band is two standard errors.</figcaption></figure>\n";
+  return "<figure>" + evidence_svg(plot) + "<figcaption>" + escaped(plot.channel) +
+         ": measured minus explained [" +
+         escaped(plot.unit.empty() ? "standard deviations" : plot.unit) + "] against " +
+         escaped(plot.covariate) +
+         ". Orange: as the files state it. Blue: with all corrections. Within the band, 95 % of "
+         "blue points are chance.</figcaption></figure>\n";
 }
 
 std::string gain_text(const HeldOutGain& gain) {
@@ -58,38 +85,100 @@ std::string places_table(const std::vector<FoundPlace>& places) {
   return html + "</tbody></table></div>\n";
 }
 
-std::string cause_section(const FoundCause& c) {
-  std::string body = "<p><b>" + short_number(c.size) + " " + escaped(c.unit) +
-                     "</b> (95 %: " + short_number(c.low) + " to " + short_number(c.high) +
-                     "), p = " + short_number(c.p) + ", evidence " + fixed(c.evidence, 1) +
-                     " nats, gain " + gain_text(c.gain) + ".</p>\n";
-  if (!c.note.empty()) body += "<p>" + escaped(c.note) + "</p>\n";
+std::string cause_section(const FoundCause& c, const Advice& advice) {
+  std::string body =
+      "<p><b>" + escaped(advice.size) + "</b>, " + escaped(advice.certainty) + ".</p>\n";
+  if (!advice.action.empty()) body += "<p>" + with_code(advice.action) + ".</p>\n";
+  if (!advice.gain.empty()) body += "<p>" + escaped(capitalised(advice.gain)) + ".</p>\n";
   if (const std::string doubt = size_doubt(c); !doubt.empty())
     body += "<p><b>" + escaped(doubt) + "</b></p>\n";
+  body += places_table(c.places) + figure(c.plot);
+  std::string evidence = "<p><code>" + escaped(c.effect) + "</code> = " + short_number(c.size) +
+                         (c.unit == "1" ? "" : " " + escaped(c.unit)) +
+                         " (95 %: " + short_number(c.low) + " to " + short_number(c.high) +
+                         "), p = " + short_number(c.p) + ", evidence " + fixed(c.evidence, 1) +
+                         " nats, gain " + gain_text(c.gain) + ".</p>\n";
+  if (!c.note.empty()) evidence += "<p>" + escaped(c.note) + "</p>\n";
   if (!c.inseparable.empty())
-    body += "<p>Not separable in this drive from " + escaped(listed(c.inseparable)) +
-            (c.separating.empty() ? "" : "; " + escaped(c.separating)) + ".</p>\n";
-  const std::string title = c.effect + (c.session.empty() ? "" : " in " + c.session);
-  return section(title, body + places_table(c.places) + figure(c.plot));
+    evidence += "<p>Not separable in this drive from " + escaped(listed(c.inseparable)) +
+                (c.separating.empty() ? "" : "; " + escaped(c.separating)) + ".</p>\n";
+  return section(advice.fault, body + folded("Evidence", evidence));
 }
 
 // Draws the estimated smooth function of the covariate.
 std::string curve_figure(const EvidencePlot& plot) {
   if (plot.curve.size() < 2) return "";
-  EvidencePlot curve{plot.channel, plot.covariate, {}, {}, {}};
+  EvidencePlot curve;
+  curve.channel = plot.channel;
+  curve.covariate = plot.covariate;
   for (const auto& [x, y] : plot.curve) curve.bins.push_back({x, y, y, 0.0, 0});
   return "<figure>" + evidence_svg(curve) + "<figcaption>Estimated function [" +
          escaped(plot.curve_unit) + "] against " + escaped(plot.covariate) +
          ".</figcaption></figure>\n";
 }
 
+std::string unknown_title(const UnknownCause& u) {
+  return "Unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on;
+}
+
 std::string unknown_section(const UnknownCause& u) {
-  const std::string title = "unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on;
-  std::string body = "<p>No effect of the catalogue explains it. p = " + short_number(u.p) +
-                     ", gain " + gain_text(u.gain) + ".</p>\n";
+  std::string body =
+      "<p>No effect of the catalogue explains it.</p>\n" + curve_figure(u.plot) + figure(u.plot);
+  std::string evidence = "<p>p = " + short_number(u.p) + ", gain " + gain_text(u.gain) + ".</p>\n";
   if (!u.inseparable.empty())
-    body += "<p>Not separable in this drive from " + escaped(listed(u.inseparable)) + ".</p>\n";
-  return section(title, body + figure(u.plot) + curve_figure(u.plot));
+    evidence += "<p>Not separable in this drive from " + escaped(listed(u.inseparable)) + ".</p>\n";
+  return section(unknown_title(u), body + folded("Evidence", evidence));
+}
+
+// The first screen: what is wrong, by how much, how sure that is, what to do.
+std::string summary_section(const Diagnosis& d, const std::vector<Advice>& advice) {
+  std::string rows;
+  const auto add = [&](const std::string& fault, const std::string& size, const std::string& sure,
+                       const std::string& action) {
+    rows += "<tr><td><b>" + escaped(fault) + "</b></td><td>" + escaped(size) + "</td><td>" +
+            escaped(sure) + "</td><td>" + with_code(action) + "</td></tr>";
+  };
+  for (const Advice& a : advice)
+    if (!a.of_place) add(a.fault, a.size, a.certainty, a.action);
+  for (const UnknownCause& u : d.unknown)
+    add(unknown_title(u), "see the curve below", "sure that it depends, not why",
+        "Look at the curve: what it depends on shows where to search");
+  if (rows.empty())
+    return section("Nothing is wrong with the sensors",
+                   "<p>The stated calibration explains these " + std::to_string(d.samples) +
+                       " readings.</p>\n");
+  std::string body =
+      "<div class=\"scroll\"><table class=\"stacked\"><thead><tr><th>fault</th><th>size (95 %)</th>"
+      "<th>certainty</th><th>to do</th></tr></thead><tbody>" +
+      rows + "</tbody></table></div>\n";
+  if (const std::string text = reckoning_text(d); !text.empty())
+    body += "<p><b>" + escaped(text) + ".</b></p>\n";
+  return section("Found", body);
+}
+
+std::string place_section(const std::vector<Advice>& advice) {
+  std::string rows;
+  for (const Advice& a : advice)
+    if (a.of_place)
+      rows += "<li><b>" + escaped(a.fault) + "</b>: " + escaped(a.size) + ". " +
+              with_code(a.action) + ".</li>";
+  return rows.empty() ? "" : section("Features of the place", "<ul>" + rows + "</ul>\n");
+}
+
+std::string fine_section(const Diagnosis& d) {
+  const std::vector<std::string> nouns = checked_and_fine(d);
+  if (nouns.empty()) return "";
+  return section("Checked and fine", "<p>" + escaped(capitalised(listed(nouns))) + ".</p>\n");
+}
+
+std::string blind_section(const Diagnosis& d) {
+  std::string rows;
+  for (const BlindSpot& spot : blind_spots(d))
+    rows += "<li>" + escaped(capitalised(listed(spot.nouns))) + ": <b>" + escaped(spot.drive) +
+            "</b>.</li>";
+  return rows.empty() ? ""
+                      : section("Not shown by this drive, and the drive that shows it",
+                                "<ul>" + rows + "</ul>\n");
 }
 
 std::string checks_section(const Diagnosis& d) {
@@ -108,7 +197,7 @@ std::string checks_section(const Diagnosis& d) {
   };
   add(d.before, "nominal");
   add(d.after, "extended");
-  return section("Checks", html + "</tbody></table></div>\n");
+  return section("Checks of the residuals", folded("Table", html + "</tbody></table></div>\n"));
 }
 
 std::string list_section(const std::string& title, const std::vector<std::string>& lines) {
@@ -145,6 +234,7 @@ std::string evidence_curve(const EvidencePlot& plot,
 
 std::string evidence_svg(const EvidencePlot& plot) {
   Axes axes{plot.bins.front().x, plot.bins.back().x, 0.0};
+  const double deviation = plot.unit.empty() ? 1.0 : plot.deviation;
   if (axes.x_high <= axes.x_low) axes.x_high = axes.x_low + 1.0;
   for (const EvidenceBin& bin : plot.bins)
     axes.y =
@@ -164,10 +254,12 @@ std::string evidence_svg(const EvidencePlot& plot) {
             "\"/>";
     text(position(tick, 0.0).first, kPlotHeight - kPlotBottom + 16.0, "middle", short_number(tick));
   }
-  for (const double tick : round_ticks(-axes.y, axes.y, 5)) {
+  for (const double round : round_ticks(-deviation * axes.y, deviation * axes.y, 5)) {
+    const double tick = round / deviation;
     body += "<path class=\"grid\" d=\"M" + axes.at(axes.x_low, tick) + "L" +
             axes.at(axes.x_high, tick) + "\"/>";
-    text(kPlotLeft - 6.0, position(axes.x_low, tick).second + 4.0, "end", short_number(tick));
+    text(kPlotLeft - 6.0, position(axes.x_low, tick).second + 4.0, "end",
+         short_number(deviation * tick));
   }
   const double band = 2.0 * plot.bins.front().sigma;
   body += "<path fill=\"var(--soft)\" opacity=\".15\" d=\"M" + axes.at(axes.x_low, band) + "L" +
@@ -181,15 +273,14 @@ std::string evidence_svg(const EvidencePlot& plot) {
          "</title>" + body + "</svg>\n";
 }
 
-std::string diagnosis_page(const Diagnosis& d, const std::string& drive) {
-  std::string body;
-  for (const FoundCause& c : d.causes) body += cause_section(c);
+std::string diagnosis_page(const Diagnosis& d,
+                           const std::string& drive,
+                           const std::optional<StatedVehicle>& stated) {
+  const std::vector<Advice> advice = advice_of(d, stated);
+  std::string body = summary_section(d, advice) + place_section(advice);
+  for (std::size_t i = 0; i < advice.size(); ++i) body += cause_section(d.causes[i], advice[i]);
   for (const UnknownCause& u : d.unknown) body += unknown_section(u);
-  if (d.causes.empty() && d.unknown.empty())
-    body += section("Nothing found", "<p>The simulation explains these " +
-                                         std::to_string(d.samples) + " readings.</p>\n");
-  body += list_section("Unexplained", d.unexplained) +
-          list_section("Not observable in this drive", d.not_observable) +
+  body += fine_section(d) + blind_section(d) + list_section("Unexplained", d.unexplained) +
           list_section("Notes", d.notes) + checks_section(d);
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +

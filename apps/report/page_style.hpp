@@ -45,12 +45,15 @@ stroke-linecap:round}
 .key{white-space:nowrap;margin-right:10px}.key svg{display:inline-block;width:22px;height:8px;
 margin-right:5px;vertical-align:middle}
 .scroll{overflow-x:auto}
+details{margin-top:8px}summary{cursor:pointer;color:var(--soft)}
 table{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums}
 th{color:var(--soft);font-weight:500;text-align:left}
 th,td{padding:4px 16px 4px 0;border-bottom:1px solid var(--line);vertical-align:top;
 overflow-wrap:anywhere}
 .warnings{margin:0;padding-left:18px;font-size:13px}
 code{font-size:.95em}
+@media(max-width:640px){.stacked thead{display:none}.stacked td{display:block;border:0;padding:2px 0}
+.stacked tr{display:block;border-bottom:1px solid var(--line);padding:8px 0}}
 @media print{body{background:#fff}section{break-inside:avoid}}
 )css";
 

@@ -54,9 +54,11 @@ void run_diagnose(const DiagnoseCommand& command, int threads, Console& console)
   if (!command.write_model.empty())
     write_whole_file(command.write_model, effect_model_text(made.diagnosis.extended));
   if (!command.output.empty())
-    write_whole_file(command.output, diagnosis_page(made.diagnosis, made.name));
+    write_whole_file(command.output, diagnosis_page(made.diagnosis, made.name, made.stated));
+  for (const std::string& line : advice_lines(made.diagnosis, made.stated)) console.say(line);
   for (const std::string& line : to_lines(made.diagnosis)) console.say(line);
   nlohmann::ordered_json result = to_json(made.diagnosis);
+  result["advice"] = advice_json(made.diagnosis, made.stated);
   if (command.keep) {
     const auto number = keep_in_ledger(command.map, request, made);
     console.say("kept as run " + std::to_string(number) + " of " + command.map.string());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,14 @@ struct FoundPlace {
   double p = 1.0;  ///< corrected for the number of places
 };
 
+/// How far dead reckoning by wheels, gyro and steering is off the reference after a few seconds.
+struct ReckoningError {
+  double over_s = 5.0;       ///< length of each piece of the drive
+  std::size_t pieces = 0;    ///< pieces compared; one begins each second
+  double position_m = 0.0;   ///< root mean square over the pieces
+  double heading_rad = 0.0;  ///< likewise
+};
+
 struct FoundCause {
   std::string effect;
   double size = 0.0;
@@ -45,6 +54,8 @@ struct FoundCause {
   bool in_place = false;  ///< acts in one place, or from one moment on
   bool at_known =
       false;  ///< the model knows an effect at this place; this is the difference from it
+  /// Of the model with all effects found but this one (effects of motion).
+  std::optional<ReckoningError> reckoned_without{};
 };
 
 /// A generic effect that no catalogued effect explains: "stream.hook depends on ...".
@@ -75,6 +86,8 @@ struct Diagnosis {
   double fit_gain = 0.0;  ///< [nats] log likelihood of the extended model beyond the nominal one's
   std::size_t samples = 0;
   double length_m = 0.0;
+  std::optional<ReckoningError> reckoned_before;  ///< of the nominal model
+  std::optional<ReckoningError> reckoned_after;   ///< of the extended model
 };
 
 /// Sorts by evidence, largest first; effects on noise come last.

@@ -23,6 +23,9 @@ struct EvidencePlot {
   std::string channel;    ///< "imu0 yaw_rate"
   std::string covariate;  ///< "time [s]"
   std::vector<EvidenceBin> bins;
+  /// One standard deviation of the bins, in `unit`; without a unit the bins have none.
+  double deviation = 1.0;
+  std::string unit;
   /// Of a term of the grammar: the covariate, ascending, and the smooth function found, in
   /// `curve_unit`; empty where the covariate is no single number.
   std::vector<std::pair<double, double>> curve;

@@ -36,8 +36,9 @@ void PresenceMap::solve_by_factor() {
   x_ = cholesky.solve(b_);
 }
 
-// Conjugate gradients (Saad 2003, algorithm 6.18) on the matrix scaled to a diagonal of ones, from
-// the earlier solution or the mean of each place's own information. Rows of the matrix sum to
+// Conjugate gradients (Saad 2003, algorithm 6.18) on the matrix scaled to a diagonal of ones. They
+// start from the mean of each place's own information and not from an earlier solution, so that the
+// result does not depend on what was solved before. Rows of the matrix sum to
 // `excess`, so that |error| <= max |residual| / min excess. False: more steps are needed than are
 // worth it.
 bool PresenceMap::solve_by_gradients() {
@@ -55,7 +56,7 @@ bool PresenceMap::solve_by_gradients() {
       node[k] = neighbours_[k].node;
       weight[k] = neighbours_[k].weight / (root[static_cast<Eigen::Index>(i)] * root[node[k]]);
     }
-  if (x_.size() != n) x_ = b_.cwiseQuotient(excess_);
+  x_ = b_.cwiseQuotient(excess_);
 
   Eigen::VectorXd rest(n);
   for (Eigen::Index i = 0; i < n; ++i) rest[i] = residual(static_cast<int>(i)) / root[i];

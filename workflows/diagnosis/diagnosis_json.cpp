@@ -109,6 +109,30 @@ ordered_json to_json(const Diagnosis& d) {
   return object;
 }
 
+ordered_json advice_json(const Diagnosis& d, const std::optional<StatedVehicle>& stated) {
+  const auto error = [](const std::optional<ReckoningError>& e) {
+    return e ? ordered_json{{"over_s", e->over_s},
+                            {"pieces", e->pieces},
+                            {"position_m", e->position_m},
+                            {"heading_rad", e->heading_rad}}
+             : ordered_json();
+  };
+  ordered_json object = {{"faults", ordered_json::array()},
+                         {"reckoning_before", error(d.reckoned_before)},
+                         {"reckoning_after", error(d.reckoned_after)},
+                         {"fine", checked_and_fine(d)}};
+  const std::vector<Advice> all = advice_of(d, stated);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    object["faults"].push_back({{"effect", all[i].effect},
+                                {"fault", all[i].fault},
+                                {"size", all[i].size},
+                                {"certainty", all[i].certainty},
+                                {"action", all[i].action},
+                                {"of_place", all[i].of_place},
+                                {"reckoning_without", error(d.causes[i].reckoned_without)}});
+  return object;
+}
+
 std::vector<std::string> to_lines(const Diagnosis& d) {
   std::vector<std::string> lines;
   const auto say = [&](const std::string& line) { lines.push_back(line); };

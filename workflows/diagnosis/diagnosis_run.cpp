@@ -69,6 +69,7 @@ DiagnosisRun of_log(const DiagnosisRequest& request, DiagnosisOptions options) {
   DiagnosisRun run{diagnose_streams(log.streams, log.readings, request.drive.string(), options),
                    log.name, log.digest};
   run.diagnosis.notes.insert(run.diagnosis.notes.begin(), log.notes.begin(), log.notes.end());
+  if (!log.streams.wheels.empty()) run.stated = StatedVehicle{log.streams.wheel_model, true};
   return run;
 }
 
@@ -78,6 +79,7 @@ DiagnosisRun looked_into(const DiagnosisRequest& request,
                          const Drive& drive) {
   DiagnosisRun run{{}, drive.name(), drive.digest()};
   const MotionStreams streams = motion_streams(drive);
+  if (!streams.wheels.empty()) run.stated = StatedVehicle{streams.wheel_model, false};
   DriveReadings readings = drive_readings(drive, streams.poses, options.known);
   if (request.map.empty()) {
     run.diagnosis = diagnose_streams(streams, readings, request.drive.string(), options);

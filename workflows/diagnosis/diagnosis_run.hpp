@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/messages.hpp"
 #include "diagnosis/inference/findings.hpp"
 #include "sensors/effects.hpp"
+#include "workflows/diagnosis/advice.hpp"
 
 namespace roadbook {
 
@@ -21,8 +23,9 @@ struct DiagnosisRequest {
 
 struct DiagnosisRun {
   Diagnosis diagnosis;
-  std::string name;    ///< of the drive, for people
-  std::string digest;  ///< of the drive, or of the log's description
+  std::string name;                       ///< of the drive, for people
+  std::string digest;                     ///< of the drive, or of the log's description
+  std::optional<StatedVehicle> stated{};  ///< empty: without wheels, or several drives
 };
 
 /// Runs a diagnosis. The result is the same for any number of threads (0: all cores). Throws

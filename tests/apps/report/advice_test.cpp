@@ -1,0 +1,131 @@
+#include "workflows/diagnosis/advice.hpp"
+
+#include <gtest/gtest.h>
+
+#include "apps/report/diagnosis_page.hpp"
+#include "workflows/diagnosis/effect_words.hpp"
+
+namespace roadbook {
+namespace {
+
+FoundCause cause(const std::string& effect, double size, double half_width) {
+  FoundCause c;
+  c.effect = effect;
+  c.size = size;
+  c.low = size - half_width;
+  c.high = size + half_width;
+  c.evidence = 40.0;
+  c.gain.total = 40.0;
+  c.gain.low = 20.0;
+  const auto declared = declared_effect(effect);
+  c.unit = declared ? std::string(declared->unit) : "1";
+  return c;
+}
+
+StatedVehicle stated_vehicle() {
+  StatedVehicle vehicle;
+  vehicle.wheels.radius_left_m = 0.31;
+  vehicle.wheels.radius_right_m = 0.30;
+  vehicle.wheels.track_width_m = 1.5;
+  vehicle.wheels.wheelbase_m = 2.6;
+  vehicle.wheels.steering_ratio = 15.0;
+  return vehicle;
+}
+
+Advice advice_for(const FoundCause& c, const std::optional<StatedVehicle>& stated) {
+  Diagnosis d;
+  d.causes.push_back(c);
+  return advice_of(d, stated).at(0);
+}
+
+TEST(Advice, SaysTheNewValueInTheKeysOfItsFile) {
+  const Advice drive = advice_for(cause("wheels0.radius", 0.02, 0.002), stated_vehicle());
+  EXPECT_EQ(drive.fault, "Both rear wheels are larger than stated");
+  EXPECT_EQ(drive.size, "2.00 % (1.80 to 2.20 %)");
+  EXPECT_EQ(drive.certainty, "sure");
+  EXPECT_EQ(drive.action,
+            "Set `wheel_radius_left` to 0.3162 m and `wheel_radius_right` to 0.3060 m");
+  StatedVehicle log = stated_vehicle();
+  log.of_log = true;
+  EXPECT_EQ(advice_for(cause("wheels0.track_width", -0.1, 0.01), log).action,
+            "Set `track_width_m` to 1.3500 m");
+  EXPECT_EQ(advice_for(cause("wheels0.radius", 0.02, 0.002), std::nullopt).action, "");
+}
+
+TEST(Advice, HasWordsForEitherSign) {
+  const Advice late = advice_for(cause("wheels0.latency", 0.03, 0.001), stated_vehicle());
+  EXPECT_EQ(late.fault, "The wheels are stamped too late");
+  EXPECT_EQ(late.size, "30.0 ms (29.0 to 31.0 ms)");
+  EXPECT_EQ(late.action, "Add -30.0 ms to `time_offset` of the wheels");
+  const Advice early = advice_for(cause("wheels0.latency", -0.03, 0.001), stated_vehicle());
+  EXPECT_EQ(early.fault, "The wheels are stamped too early");
+  EXPECT_EQ(early.size, "30.0 ms (29.0 to 31.0 ms)");
+  EXPECT_EQ(early.action, "Add 30.0 ms to `time_offset` of the wheels");
+  const Advice camera = advice_for(cause("cam2.pitch", -0.0174533, 0.0017), std::nullopt);
+  EXPECT_EQ(camera.fault, "Camera cam2 looks farther down than stated");
+  EXPECT_EQ(camera.size.substr(0, 7), "1.00 de");
+}
+
+// Of the whole catalogue, for both signs: no effect without words, no name left in braces.
+TEST(Advice, KnowsEveryEffectOfTheCatalogue) {
+  for (const EffectInfo& info : all_effects()) {
+    std::string name(info.name);
+    if (name.starts_with("STREAM")) name = "imu0" + name.substr(6);
+    ASSERT_TRUE(effect_words(name)) << name;
+    for (const double sign : {1.0, -1.0}) {
+      const Advice advice =
+          advice_for(cause(name, sign * info.plausible, 0.1 * info.plausible), stated_vehicle());
+      EXPECT_NE(advice.fault, name);
+      EXPECT_FALSE(advice.action.empty()) << name;
+      for (const std::string& text : {advice.fault, advice.size, advice.action})
+        EXPECT_EQ(text.find_first_of("{}"), std::string::npos) << text;
+    }
+  }
+}
+
+TEST(Advice, SaysWhatLooksTheSameAndWhichDriveDecides) {
+  FoundCause c = cause("wheels0.radius", 0.02, 0.002);
+  c.inseparable = {"map.scale"};
+  c.separating = "three stops would separate them";
+  const Advice advice = advice_for(c, stated_vehicle());
+  EXPECT_EQ(advice.certainty,
+            "sure that something is wrong; in this drive, an error of scale of the map looks the "
+            "same");
+  EXPECT_TRUE(advice.action.ends_with(", if it is this one; three stops would separate them"));
+  FoundCause weak = cause("wheels0.radius", 0.02, 0.002);
+  weak.evidence = 5.0;
+  EXPECT_EQ(advice_for(weak, stated_vehicle()).certainty, "likely");
+}
+
+TEST(Advice, ListsWhatIsFineAndWhatAnotherDriveShows) {
+  Diagnosis d;
+  d.causes.push_back(cause("wheels0.radius", 0.02, 0.002));
+  d.looked_for = {"wheels0.radius", "wheels0.track_width", "wheels0.radius_speed"};
+  d.not_observable = {"wheels0.radius_speed"};
+  EXPECT_EQ(checked_and_fine(d), std::vector<std::string>{"track width"});
+  const auto spots = blind_spots(d);
+  ASSERT_EQ(spots.size(), 1U);
+  EXPECT_EQ(spots[0].drive, "drive the same street at 5 and at 20 m/s");
+  EXPECT_EQ(spots[0].nouns, std::vector<std::string>{"growth of the tyres with speed"});
+}
+
+// The first screen has no word of statistics: they stand in fold-outs.
+TEST(Advice, ThePageBeginsWithFaultSizeAndWhatToDo) {
+  Diagnosis d;
+  d.causes.push_back(cause("imu0.gyro_bias", 0.0041, 0.0001));
+  d.causes.push_back(cause("ground.hinge", 0.05, 0.004));
+  d.reckoned_before = ReckoningError{5.0, 60, 0.34, 0.021};
+  d.reckoned_after = ReckoningError{5.0, 60, 0.021, 0.001};
+  const std::string page = diagnosis_page(d, "drive", stated_vehicle());
+  const std::string first = page.substr(0, page.find("<details>"));
+  EXPECT_NE(first.find("The gyro turns to the left at rest"), std::string::npos);
+  EXPECT_NE(first.find("off by 34 cm and 1.2 deg"), std::string::npos);
+  EXPECT_NE(first.find("2.1 cm and 0.06 deg"), std::string::npos);
+  for (const char* word : {"nats", "p = ", "evidence", "imu0.gyro_bias"})
+    EXPECT_EQ(first.find(word), std::string::npos) << word;
+  EXPECT_LT(page.find("Features of the place"), page.find("<details>"));
+  EXPECT_NE(page.find("nats"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace roadbook
