@@ -7,6 +7,7 @@
 #include "diagnosis/known_causes.hpp"
 #include "diagnosis/motion/grammar.hpp"
 #include "diagnosis/reckoning_error.hpp"
+#include "diagnosis/simulated_again.hpp"
 #include "diagnosis/stream_checks.hpp"
 #include "diagnosis/streams/coarse_readings.hpp"
 #include "diagnosis/streams/motion_prediction.hpp"
@@ -79,7 +80,11 @@ Diagnosis diagnose(const MotionStreams& streams,
   d.length_m = prepared.length_m;
   note_beyond_known(options.known, d);
   add_known(options.known, d);
-  add_reckoning(prepared.problem->observations(), options.known, d);
+  const Observations& obs = prepared.problem->observations();
+  add_reckoning(obs, options.known, d);
+  if (options.compare)
+    d.simulated = compare_with_simulation(obs, options.known, d.extended,
+                                          motion_model(prepared.problem->nominal()).noise);
   return d;
 }
 

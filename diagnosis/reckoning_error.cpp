@@ -111,17 +111,23 @@ Off off_reference(const Observations& obs,
 
 }  // namespace
 
-std::optional<ReckoningError> reckoning_error(const Observations& obs,
-                                              const EffectSizes& known,
-                                              const EffectSizes& found) {
-  if (obs.poses.size() < 2 || obs.wheels.size() < 2) return std::nullopt;
+namespace {
+
+struct PieceErrors {
+  std::vector<double> position_m;
+  std::vector<double> heading_rad;
+};
+
+PieceErrors piece_errors(const Observations& obs,
+                         const EffectSizes& known,
+                         const EffectSizes& found,
+                         double over_s) {
+  PieceErrors errors;
+  if (obs.poses.size() < 2 || obs.wheels.size() < 2) return errors;
   const Observations freed = freed_of(obs, motion_effects_of(known), motion_effects_of(found));
-  ReckoningError error;
-  double squared_m = 0.0;
-  double squared_rad = 0.0;
   const double half = 0.5 * kAveraged_s;
   // From the middle of the first second to that of the last half second: `over_s`.
-  const double whole = half + error.over_s + 0.5 * half;
+  const double whole = half + over_s + 0.5 * half;
   const double last = obs.poses.back().t_s - whole;
   for (double begin = obs.poses.front().t_s; begin <= last; begin += 1.0) {
     const double end = begin + whole;
@@ -132,13 +138,35 @@ std::optional<ReckoningError> reckoning_error(const Observations& obs,
     const Off move = off_reference(obs, way, begin, start, turn.heading, Eigen::Vector2d::Zero());
     const Off off = off_reference(obs, way, end - half, end, turn.heading, move.position);
     if (turn.poses < 2 || off.poses < 1) continue;
-    squared_m += off.position.squaredNorm();
-    squared_rad += off.heading * off.heading;
-    ++error.pieces;
+    errors.position_m.push_back(off.position.norm());
+    errors.heading_rad.push_back(off.heading);
   }
+  return errors;
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double squares = 0.0;
+  for (const double v : values) squares += v * v;
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+}  // namespace
+
+std::vector<double> reckoning_errors_m(const Observations& obs,
+                                       const EffectSizes& known,
+                                       const EffectSizes& found) {
+  return piece_errors(obs, known, found, ReckoningError{}.over_s).position_m;
+}
+
+std::optional<ReckoningError> reckoning_error(const Observations& obs,
+                                              const EffectSizes& known,
+                                              const EffectSizes& found) {
+  ReckoningError error;
+  const PieceErrors errors = piece_errors(obs, known, found, error.over_s);
+  error.pieces = errors.position_m.size();
   if (error.pieces < kFewestPieces) return std::nullopt;
-  error.position_m = std::sqrt(squared_m / static_cast<double>(error.pieces));
-  error.heading_rad = std::sqrt(squared_rad / static_cast<double>(error.pieces));
+  error.position_m = root_mean_square(errors.position_m);
+  error.heading_rad = root_mean_square(errors.heading_rad);
   return error;
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "diagnosis/inference/diagnosis_result.hpp"
 #include "diagnosis/streams/observations.hpp"
 
@@ -12,6 +15,11 @@ namespace roadbook {
 [[nodiscard]] std::optional<ReckoningError> reckoning_error(const Observations& obs,
                                                             const EffectSizes& known,
                                                             const EffectSizes& found);
+
+/// Distance [m] of the end of each piece from the reference; empty without wheels.
+[[nodiscard]] std::vector<double> reckoning_errors_m(const Observations& obs,
+                                                     const EffectSizes& known,
+                                                     const EffectSizes& found);
 
 /// Adds to `d` the errors with the nominal and with the extended model, and to each effect of
 /// motion the error that is left if it alone is not corrected. Nothing without effects of motion.

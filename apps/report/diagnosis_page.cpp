@@ -7,6 +7,7 @@
 
 #include "apps/report/html.hpp"
 #include "apps/report/page_style.hpp"
+#include "apps/report/simulation_section.hpp"
 #include "apps/report/svg_plot.hpp"
 #include "base/format.hpp"
 #include "diagnosis/inference/plausible_size.hpp"
@@ -280,8 +281,9 @@ std::string diagnosis_page(const Diagnosis& d,
   std::string body = summary_section(d, advice) + place_section(advice);
   for (std::size_t i = 0; i < advice.size(); ++i) body += cause_section(d.causes[i], advice[i]);
   for (const UnknownCause& u : d.unknown) body += unknown_section(u);
-  body += fine_section(d) + blind_section(d) + list_section("Unexplained", d.unexplained) +
-          list_section("Notes", d.notes) + checks_section(d);
+  body += simulation_section(d.simulated) + fine_section(d) + blind_section(d) +
+          list_section("Unexplained", d.unexplained) + list_section("Notes", d.notes) +
+          checks_section(d);
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
          escaped(drive) + " - roadbook diagnosis</title>\n<style>" + std::string(kPageStyle) +

@@ -29,6 +29,7 @@ margin:18px 0}
 figure{margin:0}
 figcaption{color:var(--soft);font-size:13px;margin:6px 0 10px}
 .pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(380px,1fr));gap:14px}
+.trio{display:grid;grid-template-columns:repeat(auto-fill,minmax(230px,1fr));gap:14px}
 svg{display:block;width:100%;height:auto}
 svg text{fill:var(--soft);font-size:12px}
 .note text{fill:var(--ink);font-weight:600}

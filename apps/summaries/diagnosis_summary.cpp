@@ -32,6 +32,16 @@ void print_effects(const Console& console) {
   console.result({{"effects", effects}});
 }
 
+ordered_json say_diagnosis(const DiagnosisRun& run, bool compare, const Console& console) {
+  const Diagnosis& d = run.diagnosis;
+  for (const auto& lines : {advice_lines(d, run.stated), to_lines(d), comparison_lines(d)})
+    for (const std::string& line : lines) console.say(line);
+  ordered_json result = to_json(d);
+  if (compare) result["simulation"] = comparison_json(d);
+  result["advice"] = advice_json(d, run.stated);
+  return result;
+}
+
 void print_ledger(const std::filesystem::path& map, const Console& console) {
   ordered_json runs = ordered_json::array();
   for (const LedgerRun& run : read_ledger(map)) {

@@ -5,7 +5,6 @@
 #include "apps/summaries/diagnosis_summary.hpp"
 #include "apps/verb.hpp"
 #include "base/whole_file.hpp"
-#include "workflows/diagnosis/diagnosis_json.hpp"
 #include "workflows/settings/effect_model.hpp"
 
 namespace roadbook {
@@ -20,6 +19,7 @@ struct DiagnoseCommand {
   std::vector<std::string> without;
   bool list_effects = false;
   bool keep = false;
+  bool compare = false;
   bool ledger = false;
   int again = 0;
 };
@@ -34,6 +34,7 @@ DiagnosisRequest diagnosis_request(const DiagnoseCommand& command) {
   if (command.keep && !request.more.empty())
     throw InvalidOption("--keep", "several drives",
                         "one drive (a ledger keeps runs of single drives)");
+  request.compare = command.compare;
   if (!command.model.empty()) request.known = read_effect_model(command.model);
   // A plain log has no views in a map. With --keep, the map only stores the ledger.
   if (command.keep && std::filesystem::is_regular_file(drive)) request.map.clear();
@@ -55,10 +56,7 @@ void run_diagnose(const DiagnoseCommand& command, int threads, Console& console)
     write_whole_file(command.write_model, effect_model_text(made.diagnosis.extended));
   if (!command.output.empty())
     write_whole_file(command.output, diagnosis_page(made.diagnosis, made.name, made.stated));
-  for (const std::string& line : advice_lines(made.diagnosis, made.stated)) console.say(line);
-  for (const std::string& line : to_lines(made.diagnosis)) console.say(line);
-  nlohmann::ordered_json result = to_json(made.diagnosis);
-  result["advice"] = advice_json(made.diagnosis, made.stated);
+  nlohmann::ordered_json result = say_diagnosis(made, command.compare, console);
   if (command.keep) {
     const auto number = keep_in_ledger(command.map, request, made);
     console.say("kept as run " + std::to_string(number) + " of " + command.map.string());
@@ -85,6 +83,7 @@ Verb diagnose_verb() {
                     "write the extended model, without effects of one place");
         options.add("--without", &command->without,
                     "effect to leave out of the catalogue; may be repeated");
+        options.add("--compare", &command->compare, "simulate the drive again and compare it");
         options.add("--keep", &command->keep, "write the result to the map's ledger");
         options.add("--ledger", &command->ledger, "print the map's ledger; needs no drive");
         options.add("--again", &command->again, "repeat this run of the ledger; needs no drive")

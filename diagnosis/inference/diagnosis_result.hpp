@@ -8,6 +8,7 @@
 #include "diagnosis/inference/checks.hpp"
 #include "diagnosis/inference/evidence.hpp"
 #include "diagnosis/inference/held_out.hpp"
+#include "diagnosis/numerics/sample_difference.hpp"
 #include "sensors/effects.hpp"
 
 namespace roadbook {
@@ -71,6 +72,19 @@ struct UnknownCause {
   EvidencePlot plot;
 };
 
+/// One quantity of a recorded drive, against simulations of the same drive: its readings less what
+/// the reference predicts with the stated calibration, or the error of dead reckoning.
+struct StreamComparison {
+  std::string stream;   ///< "imu0"; "dead reckoning"
+  std::string channel;  ///< "yaw_rate"
+  std::string unit;     ///< "deg/s"
+  std::size_t rows = 0;
+  double mean = 0.0;  ///< of the recorded drive, in `unit`
+  double sigma = 0.0;
+  SampleDifference stated;                   ///< simulated as the files state the car
+  std::optional<SampleDifference> extended;  ///< with the effects found; empty: none was found
+};
+
 struct Diagnosis {
   std::vector<FoundCause> causes;  ///< strongest first
   std::vector<UnknownCause> unknown;
@@ -88,6 +102,7 @@ struct Diagnosis {
   double length_m = 0.0;
   std::optional<ReckoningError> reckoned_before;  ///< of the nominal model
   std::optional<ReckoningError> reckoned_after;   ///< of the extended model
+  std::vector<StreamComparison> simulated;        ///< `DiagnosisOptions::compare`; else empty
 };
 
 /// Sorts by evidence, largest first; effects on noise come last.

@@ -133,6 +133,46 @@ ordered_json advice_json(const Diagnosis& d, const std::optional<StatedVehicle>&
   return object;
 }
 
+ordered_json comparison_json(const Diagnosis& d) {
+  ordered_json all = ordered_json::array();
+  for (const StreamComparison& c : d.simulated) {
+    const auto simulated = [](const SampleDifference& s) {
+      return ordered_json{{"mean", s.mean},
+                          {"sigma", s.sigma},
+                          {"distance", s.distance},
+                          {"p", s.p},
+                          {"quantiles", s.quantiles}};
+    };
+    all.push_back({{"stream", c.stream},
+                   {"channel", c.channel},
+                   {"unit", c.unit},
+                   {"rows", c.rows},
+                   {"mean", c.mean},
+                   {"sigma", c.sigma},
+                   {"stated", simulated(c.stated)},
+                   {"extended", c.extended ? simulated(*c.extended) : ordered_json()}});
+  }
+  return all;
+}
+
+std::vector<std::string> comparison_lines(const Diagnosis& d) {
+  std::vector<std::string> lines;
+  for (const StreamComparison& c : d.simulated) {
+    const int places = decimal_places(0.1 * std::max(c.sigma, c.stated.sigma));
+    const auto moments = [&](double mean, double sigma) {
+      return fixed(mean, places) + " +- " + fixed(sigma, places) + " " + c.unit;
+    };
+    lines.push_back(
+        "simulated again, " + c.stream + " " + c.channel + ": recorded " +
+        moments(c.mean, c.sigma) + "; as stated " + moments(c.stated.mean, c.stated.sigma) +
+        ", distance " + fixed(c.stated.distance, 3) +
+        (c.extended ? "; with the effects found " + moments(c.extended->mean, c.extended->sigma) +
+                          ", distance " + fixed(c.extended->distance, 3)
+                    : ""));
+  }
+  return lines;
+}
+
 std::vector<std::string> to_lines(const Diagnosis& d) {
   std::vector<std::string> lines;
   const auto say = [&](const std::string& line) { lines.push_back(line); };

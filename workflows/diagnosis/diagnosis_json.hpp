@@ -18,6 +18,10 @@ namespace roadbook {
 [[nodiscard]] nlohmann::ordered_json advice_json(const Diagnosis& diagnosis,
                                                  const std::optional<StatedVehicle>& stated);
 
+/// The recorded drive against its simulations (`diagnose --compare`), by stream and channel.
+[[nodiscard]] nlohmann::ordered_json comparison_json(const Diagnosis& diagnosis);
+[[nodiscard]] std::vector<std::string> comparison_lines(const Diagnosis& diagnosis);
+
 /// Returns the same content as lines of text.
 [[nodiscard]] std::vector<std::string> to_lines(const Diagnosis& diagnosis);
 

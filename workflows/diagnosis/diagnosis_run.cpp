@@ -120,8 +120,12 @@ DiagnosisRun of_drive(const DiagnosisRequest& request,
 }  // namespace
 
 DiagnosisRun run_diagnosis(const DiagnosisRequest& request, int num_threads, Messages& messages) {
+  if (request.compare && (!request.more.empty() || !request.map.empty()))
+    throw InvalidOption("--compare", request.map.empty() ? "several drives" : "a map",
+                        "one drive or log with a reference");
   DiagnosisOptions options;
   options.known = request.known;
+  options.compare = request.compare;
   options.num_threads = num_threads;
   options.library.without = request.without;
   options.search.progress = messages.progress();

@@ -19,6 +19,7 @@ struct DiagnosisRequest {
   EffectSizes known;                          ///< part of the model already
   std::vector<std::string> without;           ///< effects left out of the catalogue
   std::vector<std::filesystem::path> more{};  ///< further drives of the same vehicle
+  bool compare = false;                       ///< with the simulation of the same drive
 };
 
 struct DiagnosisRun {
