@@ -28,8 +28,8 @@ margin:18px 0}
 .tile span{color:var(--soft);font-size:13px}
 figure{margin:0}
 figcaption{color:var(--soft);font-size:13px;margin:6px 0 10px}
-.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(380px,1fr));gap:14px}
-.trio{display:grid;grid-template-columns:repeat(auto-fill,minmax(230px,1fr));gap:14px}
+.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(380px,100%),1fr));gap:14px}
+.trio{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(230px,100%),1fr));gap:14px}
 svg{display:block;width:100%;height:auto}
 svg text{fill:var(--soft);font-size:12px}
 .note text{fill:var(--ink);font-weight:600}

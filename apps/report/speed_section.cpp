@@ -43,7 +43,7 @@ std::string profile_figures(const SpeedReport& report) {
                                                std::to_string(report.profiles.size()) + " lanes"
                                          : std::string()) +
          "</h3><div class=\"pair\" "
-         "style=\"grid-template-columns:repeat(auto-fill,minmax(380px,1fr))\">" +
+         "style=\"grid-template-columns:repeat(auto-fill,minmax(min(380px,100%),1fr))\">" +
          html + "</div>\n";
 }
 

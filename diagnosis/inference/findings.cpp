@@ -65,14 +65,17 @@ UnknownCause unknown(const AcceptedEffect& v) {
   return cause;
 }
 
+std::string unit_after(const std::string& unit) { return unit == "1" ? "" : " " + unit; }
+
 std::string impossible(const Impossible& i) {
   char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "resembles %s = %.3g %s, but this size is physically impossible (bounds %.3g to %.3g)",
-      i.candidate.name.c_str(), i.size, i.candidate.unit.c_str(), i.candidate.lowest,
-      i.candidate.highest);
-  return text;
+  std::snprintf(text, sizeof text,
+                "resembles %s = %.3g%s, but this size is physically impossible (bounds %.3g to "
+                "%.3g)",
+                i.candidate.name.c_str(), i.size, unit_after(i.candidate.unit).c_str(),
+                i.candidate.lowest, i.candidate.highest);
+  const std::string mistake = likely_mistake(i.candidate.name, i.size);
+  return text + (mistake.empty() ? "" : ": " + mistake);
 }
 
 // Reason why an accepted effect is not reported; empty if it is. The model keeps it, so that no
@@ -84,16 +87,16 @@ std::string no_answer(const AcceptedEffect& v) {
   char text[200];
   if (std::abs(size) > kFarBeyondPlausible * c.tau && v.gain.low <= 0.0 && v.gain.total >= 0.0) {
     std::snprintf(text, sizeof text,
-                  "resembles %s = %.3g %s, but this size is far beyond the plausible size and its "
+                  "resembles %s = %.3g%s, but this size is far beyond the plausible size and its "
                   "held-out gain is not significant",
-                  c.name.c_str(), size, c.unit.c_str());
+                  c.name.c_str(), size, unit_after(c.unit).c_str());
     return text;
   }
   if (v.gain.total >= 0.0) return {};
   std::snprintf(
       text, sizeof text,
-      "resembles %s = %.3g %s, but it predicts held-out blocks worse than the model without it",
-      c.name.c_str(), size, c.unit.c_str());
+      "resembles %s = %.3g%s, but it predicts held-out blocks worse than the model without it",
+      c.name.c_str(), size, unit_after(c.unit).c_str());
   return text;
 }
 

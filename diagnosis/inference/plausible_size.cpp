@@ -2,10 +2,38 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+#include <vector>
 
 #include "sensors/effects.hpp"
 
 namespace roadbook {
+
+std::string likely_mistake(const std::string& effect, double size) {
+  const auto info = declared_effect(effect);
+  if (!info || info->unit != "1") return {};
+  const bool of_radius = effect.find("radius") != std::string::npos;
+  // A wheel that is larger than stated turns less: its readings are too small.
+  const double factor = of_radius ? 1.0 / (1.0 + size) : 1.0 + size;
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  struct Mistake {
+    double factor;
+    const char* question;
+  };
+  std::vector<Mistake> mistakes{{-1.0, "sign reversed?"},
+                                {kDegrees, "degrees taken for radians?"},
+                                {-kDegrees, "degrees taken for radians, and sign reversed?"},
+                                {1.0 / kDegrees, "radians taken for degrees?"},
+                                {3.6, "km/h taken for m/s?"},
+                                {1.0 / 3.6, "m/s taken for km/h?"}};
+  if (of_radius) {
+    mistakes.push_back({2.0, "diameter stated for the radius?"});
+    mistakes.push_back({0.5, "half the radius stated?"});
+  }
+  for (const Mistake& m : mistakes)
+    if (std::abs(factor / m.factor - 1.0) < 0.04) return m.question;
+  return {};
+}
 
 std::string size_doubt(const FoundCause& cause) {
   const auto info = declared_effect(cause.effect);
@@ -16,7 +44,8 @@ std::string size_doubt(const FoundCause& cause) {
                 "true cause is not in the catalogue",
                 std::abs(cause.size) / info->plausible, info->plausible,
                 info->unit == "1" ? "" : (" " + std::string(info->unit)).c_str());
-  return text;
+  const std::string mistake = likely_mistake(cause.effect, cause.size);
+  return text + (mistake.empty() ? "" : "; " + mistake);
 }
 
 }  // namespace roadbook

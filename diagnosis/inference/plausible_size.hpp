@@ -14,4 +14,8 @@ inline constexpr double kFarBeyondPlausible = 5.0;
 /// declared.
 [[nodiscard]] std::string size_doubt(const FoundCause& cause);
 
+/// The mistake in a file that makes a relative size so large, as a question: "sign reversed?",
+/// "degrees taken for radians?". Empty if no usual mistake has this size (within 4 %).
+[[nodiscard]] std::string likely_mistake(const std::string& effect, double size);
+
 }  // namespace roadbook

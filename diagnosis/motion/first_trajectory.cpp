@@ -3,6 +3,7 @@
 
 #include "base/median.hpp"
 #include "diagnosis/motion/motion_fit.hpp"
+#include "diagnosis/streams/course_by_motion.hpp"
 #include "diagnosis/streams/dead_reckoning.hpp"
 
 namespace roadbook {
@@ -173,14 +174,21 @@ double pose_scatter(const std::vector<PoseSample>& poses, const Value& value_of)
   return sizes.empty() ? 0.0 : kMedianToSigma * median(std::move(sizes)) / std::sqrt(kOfThird);
 }
 
-// [s] over which lines tell speed and turn well enough to begin with: of poses that scatter by
-// decimetres 0.6 s do not, and about such a start the fit of a car that creeps goes astray.
-double window_of_lines(const std::vector<PoseSample>& poses) {
+// How far lines through the poses tell speed and turn.
+struct PoseLines {
+  double window_s = 0.6;   // over which they tell them well enough, if that is not too long
+  double scatter_m = 0.0;  // of a position
+  bool too_rough = false;  // no window is short and long enough
+};
+
+// Of poses that scatter by decimetres 0.6 s do not tell speed and turn, and about such a start the
+// fit of a car that creeps goes astray.
+PoseLines lines_of(const std::vector<PoseSample>& poses) {
   constexpr double kSpeedWanted = 0.05;  // [m/s]
   constexpr double kTurnWanted = 0.02;   // [rad/s]
   constexpr double kShort = 0.6;         // [s]
   constexpr double kLong = 1.5;          // [s]; within it a car begins and ends to turn
-  if (poses.size() < 2) return kShort;
+  if (poses.size() < 2) return {};
   std::vector<double> steps;
   for (std::size_t i = 1; i < poses.size(); ++i) steps.push_back(poses[i].t_s - poses[i - 1].t_s);
   const double step = median(std::move(steps));
@@ -189,18 +197,28 @@ double window_of_lines(const std::vector<PoseSample>& poses) {
   const double psi = pose_scatter(poses, [](const PoseSample& p) { return p.heading; });
   // Variance of a line's slope: 12 step / window^3 times that of a value.
   const double share = std::max({x / kSpeedWanted, y / kSpeedWanted, psi / kTurnWanted});
-  return std::clamp(std::cbrt(12.0 * step * share * share), kShort, kLong);
+  const double wanted = std::cbrt(12.0 * step * share * share);
+  const double of_positions = std::max(x, y) / kSpeedWanted;
+  return {std::clamp(wanted, kShort, kLong), std::max(x, y),
+          std::cbrt(12.0 * step * of_positions * of_positions) > kLong};
 }
 
 }  // namespace
 
 Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
-  const double window_s = window_of_lines(obs.poses);
+  const PoseLines pose_lines = lines_of(obs.poses);
   // By stamps; delayed streams begin and end earlier.
   const double from = obs.poses.front().t_s + std::min(0.0, late_s) - 2.0 * obs.step_s;
   const double to = obs.poses.back().t_s + std::max(0.0, late_s) + 2.0 * obs.step_s;
   const auto knots = static_cast<std::size_t>(std::ceil((to - from) / obs.step_s)) + 1;
   Trajectory trajectory(from, obs.step_s, std::max<std::size_t>(knots, 3));
+  // The headings of such poses are a course, which their scatter hides.
+  if (!obs.poses_have_heading && pose_lines.too_rough &&
+      lay_way_on_positions(obs, pose_lines.scatter_m, trajectory)) {
+    trajectory.integrate();
+    trajectory.begin_at(from - late_s);
+    return trajectory;
+  }
   const std::vector<PoseRun> runs = runs_of(obs.poses);
   std::size_t j = 0;
   double left_s = 0.0;
@@ -208,7 +226,7 @@ Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const double begin_s = obs.poses[runs[r].begin].t_s;
     const double end_s = obs.poses[runs[r].end - 1].t_s;
-    RunLines lines(obs, runs[r], window_s);
+    RunLines lines(obs, runs[r], pose_lines.window_s);
     double turned_more = 0.0;
     if (r > 0) {
       const PoseMoment reached = lines.at(begin_s);

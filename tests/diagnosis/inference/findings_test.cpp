@@ -6,6 +6,7 @@
 #include <array>
 
 #include "diagnosis/inference/check_notes.hpp"
+#include "diagnosis/inference/plausible_size.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
 
 namespace roadbook {
@@ -70,6 +71,23 @@ TEST(Findings, PlacesOfOneNameAreNotOneAndAnEffectInTwoKindsOfDataIs) {
   for (const FoundCause& c : merged(parts).causes) sizes.push_back(c.size);
   std::sort(sizes.begin(), sizes.end());
   EXPECT_EQ(sizes, (std::vector<double>{0.020, 0.06, 0.12}));
+}
+
+// Gyro rates in degrees are 57.3 times too large; a radius stated as a diameter is half of it.
+TEST(LikelyMistake, IsAskedWhereASizeIsThatOfAUsualOne) {
+  EXPECT_EQ(likely_mistake("imu0.gyro_scale", -2.0), "sign reversed?");
+  EXPECT_EQ(likely_mistake("imu0.gyro_scale", 56.3), "degrees taken for radians?");
+  EXPECT_EQ(likely_mistake("steering0.ratio", -0.9825), "radians taken for degrees?");
+  EXPECT_EQ(likely_mistake("wheels0.radius", -0.5), "diameter stated for the radius?");
+  EXPECT_EQ(likely_mistake("wheels0.radius", 1.0), "half the radius stated?");
+  EXPECT_EQ(likely_mistake("wheels0.radius", 2.6), "m/s taken for km/h?");
+  EXPECT_EQ(likely_mistake("imu0.gyro_scale", 0.02), "");
+  EXPECT_EQ(likely_mistake("imu0.gyro_scale", 1.0), "");
+  EXPECT_EQ(likely_mistake("imu0.gyro_bias", -2.0), "");
+  FoundCause cause;
+  cause.effect = "imu0.gyro_scale";
+  cause.size = -2.0;
+  EXPECT_TRUE(size_doubt(cause).ends_with("; sign reversed?"));
 }
 
 }  // namespace
