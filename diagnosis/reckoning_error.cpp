@@ -22,7 +22,7 @@ Observations freed_of(const Observations& obs,
                       const MotionEffects& known,
                       const MotionEffects& found) {
   const Trajectory along = smoothed(trajectory_of_poses(obs));
-  constexpr unsigned kReadings = kWheels | kSteeringBit | kGyroBit;
+  constexpr unsigned kReadings = kWheels | kSteeringBit | kGyroBit | kPoses;
   std::vector<double> change = predict_rows(obs, along, found, kReadings);
   const std::vector<double> usual = predict_rows(obs, along, known, kReadings);
   for (std::size_t i = 0; i < change.size(); ++i) change[i] -= usual[i];
@@ -42,6 +42,11 @@ Observations freed_of(const Observations& obs,
   for (std::size_t i = 0; i < obs.steering.size(); ++i)
     freed.steering[i].value -= of(Channel::kSteering, i);
   for (std::size_t i = 0; i < obs.gyro.size(); ++i) freed.gyro[i].value -= of(Channel::kGyro, i);
+  for (std::size_t i = 0; i < obs.poses.size(); ++i) {
+    freed.poses[i].x -= of(Channel::kPoseAlong, i);
+    freed.poses[i].y -= of(Channel::kPoseAcross, i);
+    if (obs.poses_have_heading) freed.poses[i].heading -= of(Channel::kPoseHeading, i);
+  }
   return freed;
 }
 
@@ -93,8 +98,10 @@ Off off_reference(const Observations& obs,
                   const Eigen::Vector2d& move) {
   Off off;
   double first = 0.0;
-  for (const PoseSample& pose : obs.poses) {
-    if (pose.t_s < begin_s || pose.t_s > end_s) continue;
+  auto sample = std::lower_bound(obs.poses.begin(), obs.poses.end(), begin_s,
+                                 [](const PoseSample& p, double t) { return p.t_s < t; });
+  for (; sample != obs.poses.end() && sample->t_s <= end_s; ++sample) {
+    const PoseSample& pose = *sample;
     const Reckoned here = at(way, pose.t_s, obs.step_s);
     off.position +=
         Eigen::Vector2d(pose.x, pose.y) - (Eigen::Rotation2Dd(turn) * here.position + move);
@@ -134,9 +141,9 @@ PieceErrors piece_errors(const Observations& obs,
     const std::vector<Reckoned> way = reckon(freed, begin, end);
     if (way.size() < 3 || way.back().position.norm() < kLeastWay_m) continue;
     const double start = begin + kAveraged_s;
-    const Off turn = off_reference(obs, way, begin, start, 0.0, Eigen::Vector2d::Zero());
-    const Off move = off_reference(obs, way, begin, start, turn.heading, Eigen::Vector2d::Zero());
-    const Off off = off_reference(obs, way, end - half, end, turn.heading, move.position);
+    const Off turn = off_reference(freed, way, begin, start, 0.0, Eigen::Vector2d::Zero());
+    const Off move = off_reference(freed, way, begin, start, turn.heading, Eigen::Vector2d::Zero());
+    const Off off = off_reference(freed, way, end - half, end, turn.heading, move.position);
     if (turn.poses < 2 || off.poses < 1) continue;
     errors.position_m.push_back(off.position.norm());
     errors.heading_rad.push_back(off.heading);
