@@ -45,7 +45,10 @@ Observations freed_of(const Observations& obs,
   for (std::size_t i = 0; i < obs.poses.size(); ++i) {
     freed.poses[i].x -= of(Channel::kPoseAlong, i);
     freed.poses[i].y -= of(Channel::kPoseAcross, i);
-    if (obs.poses_have_heading) freed.poses[i].heading -= of(Channel::kPoseHeading, i);
+    if (obs.poses_have_heading)
+      freed.poses[i].heading -= of(Channel::kPoseHeading, i);
+    else
+      freed.poses[i].heading = along.at(obs.poses[i].t_s).heading;
   }
   return freed;
 }
@@ -115,10 +118,6 @@ Off off_reference(const Observations& obs,
   off.heading /= static_cast<double>(off.poses);
   return off;
 }
-
-}  // namespace
-
-namespace {
 
 struct PieceErrors {
   std::vector<double> position_m;
