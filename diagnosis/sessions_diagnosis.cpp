@@ -5,9 +5,13 @@
 #include "diagnosis/inference/extended_model.hpp"
 #include "diagnosis/known_causes.hpp"
 #include "diagnosis/sessions_problem.hpp"
+#include "diagnosis/stream_checks.hpp"
 
 namespace roadbook {
 namespace {
+
+constexpr double kShortestRun_m = 1.0;
+constexpr double kShortestRun_s = 2.0;
 
 const std::string& source_of(const SessionStreams& drive) {
   return drive.source.empty() ? drive.name : drive.source;
@@ -50,12 +54,17 @@ Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
   std::vector<SessionProblem> problems;
   std::vector<std::string> notes;
   double length_m = 0.0;
+  // What one drive must show alone, all must show together: runs in a laboratory are short.
+  DiagnosisOptions of_one = options;
+  of_one.min_length_m = std::min(options.min_length_m, kShortestRun_m);
+  of_one.min_duration_s = std::min(options.min_duration_s, kShortestRun_s);
   for (const SessionStreams& drive : drives) {
-    prepared.push_back(prepare_motion(drive.streams, source_of(drive), options));
+    prepared.push_back(prepare_motion(drive.streams, source_of(drive), of_one));
     problems.push_back({drive.name, prepared.back().problem.get()});
     for (const std::string& note : prepared.back().notes) notes.push_back(drive.name + ": " + note);
     length_m += prepared.back().length_m;
   }
+  check_length(length_m, std::to_string(drives.size()) + " drives together", options);
   Diagnosis d = diagnose_together(problems, options.search);
   d.notes.insert(d.notes.begin(), notes.begin(), notes.end());
   d.length_m = length_m;

@@ -18,7 +18,8 @@ struct SessionStreams {
 
 /// Diagnosis of several drives of one vehicle together (`SessionsProblem`): effects common to all
 /// have one size, effects of one drive are reported with it. One drive is diagnosed as by
-/// `diagnose`. Throws BadInput if a drive cannot be diagnosed.
+/// `diagnose`. Throws BadInput if a drive cannot be diagnosed. A drive may be shorter than the
+/// options ask for (1 m and 2 s), if all together are long enough.
 [[nodiscard]] Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
                                           const DiagnosisOptions& options = {});
 

@@ -74,7 +74,7 @@ Verb diagnose_verb() {
       [command](Options& options) {
         options.add(
             "DRIVE", &command->drives,
-            "folder of a drive, or YAML of a plain log; several folders: drives of one vehicle");
+            "folder of a drive, or YAML of a plain log; several: drives of one vehicle");
         options.add("--map,-m", &command->map,
                     "map of the drive: its camera observations are used as well");
         options.add("--output,-o", &command->output, "HTML report to write");

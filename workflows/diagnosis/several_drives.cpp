@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
+#include <utility>
 
 #include "base/digest.hpp"
+#include "diagnosis/logs/plain_log.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/sessions_diagnosis.hpp"
 #include "diagnosis/streams/drive_streams.hpp"
@@ -13,9 +14,15 @@
 namespace roadbook {
 namespace {
 
+// A drive or a plain log.
 struct NamedDrive {
   std::string name;  ///< unique name in reports
-  Drive drive;
+  std::string source;
+  std::string digest;
+  MotionStreams streams;
+  DriveReadings readings;
+  std::vector<std::string> notes;
+  std::vector<std::string> without;  ///< effects that its reference cannot have
 };
 
 // Returns a name that distinguishes the drive from the others in reports.
@@ -28,42 +35,62 @@ std::string unique_name(const std::string& name, const std::vector<NamedDrive>& 
   return unique;
 }
 
-std::vector<NamedDrive> open_drives(const std::vector<std::filesystem::path>& folders,
+NamedDrive read_drive(const std::filesystem::path& folder,
+                      const EffectSizes& known,
+                      Messages& messages) {
+  const Drive drive = Drive::open(folder);
+  messages.warn(drive.warnings());
+  MotionStreams streams = motion_streams(drive);
+  DriveReadings readings = drive_readings(drive, streams.poses, known);
+  return {drive.name(),
+          drive.folder().string(),
+          drive.digest(),
+          std::move(streams),
+          std::move(readings),
+          {},
+          {}};
+}
+
+NamedDrive read_log(const std::filesystem::path& description) {
+  PlainLog log = read_plain_log(description);
+  return {std::move(log.name),    description.string(),    std::move(log.digest),
+          std::move(log.streams), std::move(log.readings), std::move(log.notes),
+          std::move(log.without)};
+}
+
+std::vector<NamedDrive> open_drives(const std::vector<std::filesystem::path>& places,
+                                    const EffectSizes& known_effects,
                                     Messages& messages) {
   std::vector<NamedDrive> drives;
   std::map<std::string, std::filesystem::path> known;
-  for (const auto& folder : folders) {
-    if (std::filesystem::is_regular_file(folder))
-      throw BadInput({Severity::kError, folder.string(), 0, "drive", "a file",
-                      "the folder of a drive: plain logs are diagnosed one by one"});
-    Drive drive = Drive::open(folder);
-    const auto [first, fresh] = known.try_emplace(drive.digest(), folder);
+  for (const auto& place : places) {
+    NamedDrive one = std::filesystem::is_regular_file(place)
+                         ? read_log(place)
+                         : read_drive(place, known_effects, messages);
+    const auto [first, fresh] = known.try_emplace(one.digest, place);
     if (!fresh)
-      throw BadInput({Severity::kError, folder.string(), 0, "drive",
+      throw BadInput({Severity::kError, place.string(), 0, "drive",
                       "the same drive as " + first->second.string(), "another one"});
-    messages.warn(drive.warnings());
-    std::string name = unique_name(drive.name(), drives);
-    drives.push_back({std::move(name), std::move(drive)});
+    one.name = unique_name(one.name, drives);
+    drives.push_back(std::move(one));
   }
   return drives;
 }
 
 // Diagnoses the motion effects that the drives share. Leaves out a drive that has other readings
 // but no recorded motion.
-Diagnosis shared_motion(const std::vector<NamedDrive>& drives,
-                        const std::vector<MotionStreams>& streams,
-                        const std::vector<DriveReadings>& readings,
-                        const DiagnosisOptions& options) {
+Diagnosis shared_motion(const std::vector<NamedDrive>& drives, const DiagnosisOptions& options) {
   std::vector<SessionStreams> moving;
   std::vector<std::string> notes;
-  for (std::size_t d = 0; d < drives.size(); ++d) {
+  for (const NamedDrive& one : drives) {
     const bool stands_apart =
-        !records_motion(streams[d]) && !readings[d].empty() && streams[d].poses.size() > 1;
+        !records_motion(one.streams) && !one.readings.empty() && one.streams.poses.size() > 1;
     if (stands_apart)
-      notes.push_back(drives[d].name +
+      notes.push_back(one.name +
                       ": left out of the motion, because it records no stream besides the poses");
     else
-      moving.push_back({drives[d].name, streams[d], drives[d].drive.folder().string()});
+      moving.push_back({one.name, one.streams, one.source});
+    for (const std::string& note : one.notes) notes.push_back(one.name + ": " + note);
   }
   Diagnosis all;
   if (!moving.empty()) all = diagnose_sessions(moving, options);
@@ -75,27 +102,26 @@ Diagnosis shared_motion(const std::vector<NamedDrive>& drives,
 }  // namespace
 
 DiagnosisRun diagnose_several(const DiagnosisRequest& request,
-                              const DiagnosisOptions& options,
+                              const DiagnosisOptions& given,
                               Messages& messages) {
   if (!request.map.empty())
     throw InvalidOption("--map", request.map.string(), "no map with several drives");
-  std::vector<std::filesystem::path> folders{request.drive};
-  folders.insert(folders.end(), request.more.begin(), request.more.end());
-  const std::vector<NamedDrive> drives = open_drives(folders, messages);
-  std::vector<MotionStreams> streams;
-  std::vector<DriveReadings> readings;
+  std::vector<std::filesystem::path> places{request.drive};
+  places.insert(places.end(), request.more.begin(), request.more.end());
+  const std::vector<NamedDrive> drives = open_drives(places, request.known, messages);
+  DiagnosisOptions options = given;
   DiagnosisRun run;
   Sha256 digest;
   for (const NamedDrive& one : drives) {
-    digest.update(one.drive.digest());
+    digest.update(one.digest);
     run.name += (run.name.empty() ? "" : ", ") + one.name;
-    streams.push_back(motion_streams(one.drive));
-    readings.push_back(drive_readings(one.drive, streams.back().poses, request.known));
+    auto& without = options.library.without;
+    without.insert(without.end(), one.without.begin(), one.without.end());
   }
   run.digest = digest.hex();
-  run.diagnosis = shared_motion(drives, streams, readings, options);
+  run.diagnosis = shared_motion(drives, options);
   std::vector<SessionReadings> read;
-  for (std::size_t d = 0; d < drives.size(); ++d) read.push_back({drives[d].name, &readings[d]});
+  for (const NamedDrive& one : drives) read.push_back({one.name, &one.readings});
   add_findings(diagnose_readings(read, options.search, options.library, options.known),
                run.diagnosis);
   return run;

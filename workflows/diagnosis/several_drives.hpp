@@ -5,8 +5,8 @@
 
 namespace roadbook {
 
-/// Runs `run_diagnosis` on several drives of one vehicle. It diagnoses the motion of all drives
-/// together (`diagnose_sessions`), and the readings of each kind of other sensor together
+/// Runs `run_diagnosis` on several drives or plain logs of one vehicle. It diagnoses the motion of
+/// all together (`diagnose_sessions`), and the readings of each kind of other sensor together
 /// (`diagnose_readings`). A drive without recorded motion takes no part in the diagnosis of motion.
 /// Throws BadInput, also for a drive that is given twice, because its data would count twice.
 [[nodiscard]] DiagnosisRun diagnose_several(const DiagnosisRequest& request,
