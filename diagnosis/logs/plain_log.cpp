@@ -56,15 +56,19 @@ class LogReader {
   void vehicle() {
     auto yaml = yaml_.map("vehicle");
     if (!yaml)
-      return yaml_.report("vehicle", "nothing",
-                          "radius_m, track_width_m, wheelbase_m of the nominal vehicle");
+      return yaml_.report(
+          "vehicle", "nothing",
+          "radius_m, track_width_m and, with steering, wheelbase_m of the nominal vehicle");
     WheelModel& m = log_.streams.wheel_model;
     if (yaml->read("radius_m", m.radius_left_m, kPositive))
       m.radius_right_m = m.radius_left_m;
     else if (yaml->require("radius_left_m", m.radius_left_m, kPositive))
       yaml->require("radius_right_m", m.radius_right_m, kPositive);
     has_track_ = yaml->read("track_width_m", m.track_width_m, kPositive);
-    yaml->require("wheelbase_m", m.wheelbase_m, kPositive);
+    if (yaml_.has("steering") || yaml_.has("speed"))
+      yaml->require("wheelbase_m", m.wheelbase_m, kPositive);
+    else
+      yaml->read("wheelbase_m", m.wheelbase_m, kPositive);
     yaml->read("steering_ratio", m.steering_ratio, {1e-3, 1e3});
     yaml->read("sigma_angle_rad", m.sigma_angle_rad, {1e-9, 10.0});
     if (yaml_.has("wheels") && !yaml->has("track_width_m"))

@@ -183,6 +183,11 @@ std::vector<double> cumulative_angle(const std::vector<double>& t_s,
     case WheelUnit::kAngle:
     case WheelUnit::kTicks:
       break;
+    case WheelUnit::kAnglePerRow: {
+      double sum = 0.0;
+      for (double& a : angle) a = sum += a;
+      break;
+    }
     case WheelUnit::kLength:
       for (double& a : angle) a /= radius_m;
       break;

@@ -10,7 +10,7 @@ namespace roadbook {
 enum class Quantity { kTime, kLength, kAngle, kSpeed, kTurnRate, kWheel, kNumber };
 
 /// Kind of wheel reading that a unit implies.
-enum class WheelUnit { kAngle, kTicks, kLength, kLengthPerRow, kTurnRate, kSpeed };
+enum class WheelUnit { kAngle, kAnglePerRow, kTicks, kLength, kLengthPerRow, kTurnRate, kSpeed };
 
 struct Unit {
   double to_si = 1.0;                   ///< 1 for ticks, which ticks_per_turn converts to angles

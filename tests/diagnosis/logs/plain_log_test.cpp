@@ -77,6 +77,33 @@ TEST_F(PlainLogFiles, ACounterThatBeginsAgainGoesOn) {
   EXPECT_NEAR(w[1].right_rad - w[0].right_rad, -0.4 * std::numbers::pi, 1e-12);  // four back
 }
 
+// Ten and four ticks of twenty a turn since the last row; a wheelbase is not asked for without
+// steering.
+TEST_F(PlainLogFiles, CountsOfEachRowAddUpAndNeedNoWheelbase) {
+  write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,0,0\n");
+  write("w.csv", "t,l,r,d\n0,3,3,9\n1,10,-4,90\n2,5,2,180\n");
+  const std::string vehicle = "vehicle: {radius_m: 0.5, track_width_m: 1.5}\n";
+  const std::string ticks = "unit: ticks/row, ticks_per_turn: 20}";
+  const PlainLog log = read(vehicle + kPoses + "wheels: {file: w.csv, time: t, left: {column: l, " +
+                            ticks + ", right: {column: r, " + ticks + "}\n");
+  const auto& w = log.streams.wheels;
+  ASSERT_EQ(w.size(), 3U);
+  EXPECT_NEAR(w[1].left_rad - w[0].left_rad, std::numbers::pi, 1e-12);
+  EXPECT_NEAR(w[1].right_rad - w[0].right_rad, -0.4 * std::numbers::pi, 1e-12);
+  EXPECT_NEAR(w[2].left_rad - w[0].left_rad, 1.5 * std::numbers::pi, 1e-12);
+  const PlainLog degrees = read(vehicle + kPoses +
+                                "wheels: {file: w.csv, time: t, left: {column: d, unit: deg/row},\n"
+                                "  right: {column: d, unit: deg/row}}\n");
+  EXPECT_NEAR(degrees.streams.wheels[2].left_rad - degrees.streams.wheels[0].left_rad,
+              1.5 * std::numbers::pi, 1e-12);
+  expect_words(refusal(vehicle + kPoses +
+                       "wheels: {file: w.csv, time: t, left: {column: l, unit: ticks/row}, "
+                       "right: r}\n"),
+               "ticks_per_turn: got nothing");
+  expect_words(refusal(vehicle + kPoses + "steering: {file: w.csv, time: t, angle: l}\n"),
+               "vehicle.wheelbase_m: got nothing");
+}
+
 TEST_F(PlainLogFiles, PositionsWithoutADirectionGetTheCourseAsAFirstGuess) {
   write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,1,0\n2,2,2,0\n3,2,2,0\n");
   write("g.csv", "t,w\n0,0\n1,0\n");
