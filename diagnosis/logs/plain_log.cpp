@@ -9,6 +9,7 @@
 #include "diagnosis/logs/plain_readings.hpp"
 #include "diagnosis/logs/plain_streams.hpp"
 #include "diagnosis/streams/drive_streams.hpp"
+#include "diagnosis/streams/level_motion.hpp"
 
 namespace roadbook {
 namespace {
@@ -45,6 +46,7 @@ class LogReader {
     auto faults = yaml_.finish_problems();
     for (const Problem& p : problems_.problems()) faults.push_back(p);
     if (!faults.empty()) throw BadInput(faults);
+    if (!attitudes_.empty()) level_motion(attitudes_, {}, log_.streams);
     shift_clock();
     for (auto& note : implausible_values(log_.streams)) log_.notes.push_back(std::move(note));
     columns_of_friction();
@@ -117,6 +119,7 @@ class LogReader {
     auto& poses = log_.streams.poses;
     for (std::size_t i = 0; i < n; ++i)
       poses.push_back({table.stamps()[i], x[i], y[i], derived ? 0.0 : heading[i]});
+    stand(table, yaml);
     if (drop_m > 0.0) drop_jumps(drop_m);
     if (derived) {
       derive_course(poses, chord);
@@ -126,6 +129,26 @@ class LogReader {
     for (PoseSample& p : poses) {
       p.x -= std::cos(p.heading) * forward - std::sin(p.heading) * left;
       p.y -= std::sin(p.heading) * forward + std::cos(p.heading) * left;
+    }
+  }
+
+  // Slope and bank at the poses, which are not yet thinned.
+  void stand(StreamReader& table, YamlMap& yaml) {
+    const auto& poses = log_.streams.poses;
+    const auto of = [&](const std::string& key) {
+      return yaml.has(key) ? column(table, yaml, key, Quantity::kAngle) : std::vector<double>();
+    };
+    const std::vector<double> pitch = of("pitch");
+    const std::vector<double> roll = of("roll");
+    if (heights_.empty() && yaml.has("height"))
+      heights_ = column(table, yaml, "height", Quantity::kLength);
+    if (heights_.size() == poses.size()) attitudes_ = slopes_of(poses, heights_);
+    if (attitudes_.empty() && pitch.empty() && roll.empty()) return;
+    attitudes_.resize(poses.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      attitudes_[i].t_s = poses[i].t_s;
+      if (pitch.size() == poses.size()) attitudes_[i].slope_rad = pitch[i];
+      if (roll.size() == poses.size()) attitudes_[i].bank_rad = roll[i];
     }
   }
 
@@ -156,7 +179,7 @@ class LogReader {
     const auto longitude = angle("longitude");
     std::vector<double> height(latitude.size(), 0.0);
     if (yaml.has("height"))
-      height = column(table, yaml, "height", Quantity::kLength);
+      heights_ = height = column(table, yaml, "height", Quantity::kLength);
     else
       log_.notes.emplace_back("poses have no height: 0 m above the ellipsoid is assumed");
     if (longitude.size() != latitude.size() || height.size() != latitude.size()) return;
@@ -303,6 +326,8 @@ class LogReader {
   ProblemList problems_;
   PlainLog log_;
   bool has_track_ = false;
+  std::vector<double> heights_;      // of the poses; empty: not logged
+  std::vector<Attitude> attitudes_;  // likewise
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "diagnosis/streams/level_motion.hpp"
+
 namespace roadbook {
 
 MotionStreams motion_streams(const Drive& drive) { return motion_streams(drive, drive.truth()); }
@@ -15,8 +17,11 @@ MotionStreams motion_streams(const Drive& drive, const std::vector<TimedPose>& r
   const auto seconds = [origin](std::int64_t t_ns) {
     return 1e-9 * static_cast<double>(t_ns - origin);
   };
+  std::vector<Attitude> attitudes;
   for (const TimedPose& p : reference) {
     const Eigen::Matrix3d R = p.T_world_vehicle.linear();
+    attitudes.push_back({seconds(p.t_ns), std::atan2(R(2, 0), std::hypot(R(0, 0), R(1, 0))),
+                         std::atan2(R(2, 1), R(2, 2))});
     streams.poses.push_back({seconds(p.t_ns), p.T_world_vehicle.translation().x(),
                              p.T_world_vehicle.translation().y(), std::atan2(R(1, 0), R(0, 0))});
   }
@@ -29,9 +34,12 @@ MotionStreams motion_streams(const Drive& drive, const std::vector<TimedPose>& r
       if (r.steering_rad) streams.steering.push_back({t, *r.steering_rad});
     });
   }
+  PitchRates pitch_rates;
   drive.for_each_imu_reading([&](const ImuReading& r) {
     streams.gyro.push_back({seconds(r.t_ns), r.angular_velocity_rad_s.z()});
+    pitch_rates.push_back({seconds(r.t_ns), r.angular_velocity_rad_s.y()});
   });
+  level_motion(attitudes, pitch_rates, streams);
   LoggedColumn temperature{"temperature", "degC", {}, {}};
   drive.for_each_friction_reading([&](const FrictionReading& r) {
     if (!r.temperature_c) return;

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/streams/streams.hpp"
+
+namespace roadbook {
+
+/// How a vehicle stands at one time, from a reference in three dimensions.
+struct Attitude {
+  double t_s = 0.0;
+  double slope_rad = 0.0;  ///< of the road ahead: positive uphill
+  double bank_rad = 0.0;   ///< roll about the direction of travel: positive to the right side down
+};
+
+/// Turn rates [rad/s] about the vehicle's y axis (to its left), at the stamps of the gyro.
+using PitchRates = std::vector<GyroSample>;
+
+/// Makes the streams those of the same motion seen from above, where the motion model holds. On a
+/// slope a wheel rolls farther than the map shows, and a gyro about the car's own axis turns less
+/// than the heading:
+///   horizontal way = cos(slope) way,
+///   heading rate = (cos(bank) w_z + sin(bank) w_y) / cos(slope)
+///                = (w_z - sin(bank) d slope / dt) / (cos(slope) cos(bank))
+/// (Euler angles yaw, pitch, roll; pitch = -slope). The second form is for wheels, and for a gyro
+/// with one axis, where `pitch_rates` are empty. `attitudes` ascend in time; before and after them
+/// the first and the last hold. Nothing is changed where no attitude is
+/// off level by more than 0.01 rad. Steering angles stay: they are about the car's own axis, and
+/// slip-free rolling on a plane road has the curvature of that plane.
+void level_motion(const std::vector<Attitude>& attitudes,
+                  const PitchRates& pitch_rates,
+                  MotionStreams& streams);
+
+/// Slopes of the road from heights [m] along the way, for references that have no attitude: lines
+/// over 10 m of way, or over as much as tells the slope to 0.01 rad by the scatter of the heights,
+/// up to 200 m. Bank is 0. Heights and poses are of the same stamps.
+[[nodiscard]] std::vector<Attitude> slopes_of(const std::vector<PoseSample>& poses,
+                                              const std::vector<double>& heights_m);
+
+}  // namespace roadbook
