@@ -11,7 +11,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kSide = 240.0, kLeft = 56.0, kBottom = 34.0, kEdge = 8.0;
+constexpr double kPlotSide = 240.0, kBesidePlot = 56.0, kUnderPlot = 34.0, kPlotEdge = 8.0;
 
 std::string three_digits(double value) {
   char text[32];
@@ -41,18 +41,20 @@ std::string quantile_plot(const StreamComparison& c) {
   const auto [low, high] = limits_of(c);
   const double range = high - low;
   const auto x = [&, first = low](double v) {
-    return fixed(kLeft + (v - first) / range * (kSide - kLeft - kEdge), 1);
+    return fixed(kBesidePlot + (v - first) / range * (kPlotSide - kBesidePlot - kPlotEdge), 1);
   };
   const auto y = [&, first = low](double v) {
-    return fixed(kSide - kBottom - (v - first) / range * (kSide - kBottom - kEdge), 1);
+    return fixed(
+        kPlotSide - kUnderPlot - (v - first) / range * (kPlotSide - kUnderPlot - kPlotEdge), 1);
   };
   std::string body;
   for (const double tick : round_ticks(low, high, 4)) {
     body += "<path class=\"grid\" d=\"M" + x(tick) + " " + y(low) + "V" + y(high) + "M" + x(low) +
             " " + y(tick) + "H" + x(high) + "\"/><text x=\"" + x(tick) + "\" y=\"" +
-            fixed(kSide - kBottom + 14.0, 1) + "\" text-anchor=\"middle\">" + three_digits(tick) +
-            "</text><text x=\"" + fixed(kLeft - 5.0, 1) + "\" y=\"" + y(tick) +
-            "\" text-anchor=\"end\" dominant-baseline=\"middle\">" + three_digits(tick) + "</text>";
+            fixed(kPlotSide - kUnderPlot + 14.0, 1) + "\" text-anchor=\"middle\">" +
+            three_digits(tick) + "</text><text x=\"" + fixed(kBesidePlot - 5.0, 1) + "\" y=\"" +
+            y(tick) + "\" text-anchor=\"end\" dominant-baseline=\"middle\">" + three_digits(tick) +
+            "</text>";
   }
   body += "<path class=\"truth\" d=\"M" + x(low) + " " + y(low) + "L" + x(high) + " " + y(high) +
           "\"/>";
@@ -64,10 +66,11 @@ std::string quantile_plot(const StreamComparison& c) {
   };
   curve(c.stated, "s1");
   if (c.extended) curve(*c.extended, "s0");
-  body += "<text x=\"" + fixed(0.5 * (kLeft + kSide), 1) + "\" y=\"" + fixed(kSide - 4.0, 1) +
-          "\" text-anchor=\"middle\">recorded [" + escaped(c.unit) + "]</text>";
+  body += "<text x=\"" + fixed(0.5 * (kBesidePlot + kPlotSide), 1) + "\" y=\"" +
+          fixed(kPlotSide - 4.0, 1) + "\" text-anchor=\"middle\">recorded [" + escaped(c.unit) +
+          "]</text>";
   const std::string name = c.stream + " " + c.channel;
-  return "<figure><svg viewBox=\"0 0 " + fixed(kSide, 0) + " " + fixed(kSide, 0) +
+  return "<figure><svg viewBox=\"0 0 " + fixed(kPlotSide, 0) + " " + fixed(kPlotSide, 0) +
          "\" role=\"img\"><title>" + escaped(name) + "</title>" + body + "</svg><figcaption>" +
          escaped(name) + "</figcaption></figure>\n";
 }

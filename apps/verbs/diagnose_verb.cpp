@@ -69,32 +69,31 @@ void run_diagnose(const DiagnoseCommand& command, int threads, Console& console)
 
 Verb diagnose_verb() {
   auto command = std::make_shared<DiagnoseCommand>();
-  return {
-      "diagnose", "reports which effects of the sensor models a drive shows",
-      [command](Options& options) {
-        options.add(
-            "DRIVE", &command->drives,
-            "folder of a drive, or YAML of a plain log; several: drives of one vehicle");
-        options.add("--map,-m", &command->map,
-                    "map of the drive: its camera observations are used as well");
-        options.add("--output,-o", &command->output, "HTML report to write");
-        options.add("--model", &command->model, "YAML file of known effects");
-        options.add("--write-model", &command->write_model,
-                    "write the extended model, without effects of one place");
-        options.add("--without", &command->without,
-                    "effect to leave out of the catalogue; may be repeated");
-        options.add("--compare", &command->compare, "simulate the drive again and compare it");
-        options.add("--keep", &command->keep, "write the result to the map's ledger");
-        options.add("--ledger", &command->ledger, "print the map's ledger; needs no drive");
-        options.add("--again", &command->again, "repeat this run of the ledger; needs no drive")
-            .range = {1, 1e6};
-        options.add("--list-effects", &command->list_effects,
-                    "print names, units and sizes; needs no drive");
-      },
-      [command](Console& console, const CommonOptions& common) {
-        run_diagnose(*command, common.threads, console);
-        return ExitStatus::kDone;
-      }};
+  return {"diagnose", "reports which effects of the sensor models a drive shows",
+          [command](Options& options) {
+            options.add(
+                "DRIVE", &command->drives,
+                "folder of a drive, or YAML of a plain log; several: drives of one vehicle");
+            options.add("--map,-m", &command->map,
+                        "map of the drive: its camera observations are used as well");
+            options.add("--output,-o", &command->output, "HTML report to write");
+            options.add("--model", &command->model, "YAML file of known effects");
+            options.add("--write-model", &command->write_model,
+                        "write the extended model, without effects of one place");
+            options.add("--without", &command->without,
+                        "effect to leave out of the catalogue; may be repeated");
+            options.add("--compare", &command->compare, "simulate the drive again and compare it");
+            options.add("--keep", &command->keep, "write the result to the map's ledger");
+            options.add("--ledger", &command->ledger, "print the map's ledger; needs no drive");
+            options.add("--again", &command->again, "repeat this run of the ledger; needs no drive")
+                .range = {1, 1e6};
+            options.add("--list-effects", &command->list_effects,
+                        "print names, units and sizes; needs no drive");
+          },
+          [command](Console& console, const CommonOptions& common) {
+            run_diagnose(*command, common.threads, console);
+            return ExitStatus::kDone;
+          }};
 }
 
 }  // namespace roadbook

@@ -14,9 +14,9 @@ namespace roadbook {
 /// The occupancy grid of a map: all patches at the present poses of the map.
 struct OccupancyGrid {
   CellShape shape;
-  std::vector<float> change;         ///< of the log odds since before any reading, tempered
-  std::vector<std::uint32_t> seen;   ///< readings that changed the cell; 0: unknown
-  std::vector<std::uint32_t> hits;   ///< readings that ended in it
+  std::vector<float> change;        ///< of the log odds since before any reading, tempered
+  std::vector<std::uint32_t> seen;  ///< readings that changed the cell; 0: unknown
+  std::vector<std::uint32_t> hits;  ///< readings that ended in it
   /// Number of independent readings; 0 in a cell that readings only passed and that shares a side
   /// with a cell that no reading reached.
   std::vector<float> effective;

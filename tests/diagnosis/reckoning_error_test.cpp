@@ -11,17 +11,17 @@
 namespace roadbook {
 namespace {
 
-constexpr double kRadius = 0.02;
-constexpr double kBias = 0.01;  // [rad/s]
+constexpr double kTrueRadius = 0.02;
+constexpr double kTrueBias = 0.01;  // [rad/s]
 
 // A car at 4 m/s whose wheels are 2 % larger than stated and whose gyro has a bias.
 MotionStreams faulty_drive(std::uint64_t seed) {
   MotionStreams streams = test::PlanarCar(seed).record({});
   for (WheelSample& w : streams.wheels) {
-    w.left_rad /= 1.0 + kRadius;
-    w.right_rad /= 1.0 + kRadius;
+    w.left_rad /= 1.0 + kTrueRadius;
+    w.right_rad /= 1.0 + kTrueRadius;
   }
-  for (GyroSample& g : streams.gyro) g.rate_rad_s += kBias;
+  for (GyroSample& g : streams.gyro) g.rate_rad_s += kTrueBias;
   return streams;
 }
 
@@ -31,18 +31,18 @@ TEST(ReckoningError, IsThatOfTheFaultsByHand) {
   const auto before = reckoning_error(obs, {}, {});
   ASSERT_TRUE(before);
   EXPECT_GT(before->pieces, 50U);
-  EXPECT_NEAR(before->heading_rad, 5.0 * kBias, 0.003);
+  EXPECT_NEAR(before->heading_rad, 5.0 * kTrueBias, 0.003);
   EXPECT_NEAR(before->position_m, std::hypot(0.4, 0.5), 0.1);
   const auto after =
-      reckoning_error(obs, {}, {{"wheels0.radius", kRadius}, {"imu0.gyro_bias", kBias}});
+      reckoning_error(obs, {}, {{"wheels0.radius", kTrueRadius}, {"imu0.gyro_bias", kTrueBias}});
   ASSERT_TRUE(after);
   EXPECT_LT(after->heading_rad, 0.01);
   EXPECT_LT(after->position_m, 0.12);
-  const auto bias_left = reckoning_error(obs, {}, {{"wheels0.radius", kRadius}});
+  const auto bias_left = reckoning_error(obs, {}, {{"wheels0.radius", kTrueRadius}});
   ASSERT_TRUE(bias_left);
-  EXPECT_NEAR(bias_left->heading_rad, 5.0 * kBias, 0.003);
+  EXPECT_NEAR(bias_left->heading_rad, 5.0 * kTrueBias, 0.003);
   EXPECT_NEAR(bias_left->position_m, 0.5, 0.08);
-  const auto radius_left = reckoning_error(obs, {}, {{"imu0.gyro_bias", kBias}});
+  const auto radius_left = reckoning_error(obs, {}, {{"imu0.gyro_bias", kTrueBias}});
   ASSERT_TRUE(radius_left);
   EXPECT_NEAR(radius_left->position_m, 0.4, 0.08);
 }

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kToDegrees = 180.0 / std::numbers::pi;
 constexpr std::string_view kCalibrate =
     "correct it with `--write-model` and `roadbook map --model`, or calibrate {sensor} again";
 constexpr std::string_view kOffset = "add {-size} ms to {offset_key} {sensor}";
@@ -50,14 +50,14 @@ constexpr std::array kWords{
                 "the tyres grow with speed", "the tyres shrink with speed", "% at 10 m/s", 1000.0,
                 "keep it in the model (`--write-model`); calibrate the radius at the usual speed"},
     EffectWords{"wheels0.eccentricity", "centring of the wheel encoder",
-                "the wheel encoder reads an angle that errs once a turn", "", "deg", kDegrees,
+                "the wheel encoder reads an angle that errs once a turn", "", "deg", kToDegrees,
                 "look at the encoder's ring: it is not centred"},
     EffectWords{"wheels0.wet_patch", "slip on wet ground", "the wheels slip on a wet place",
                 "the wheels turn too little on one place", "%", 100.0,
                 "nothing at the car: the place is slippery", true},
     EffectWords{"steering0.offset", "zero of the steering angle",
                 "the steering angle reads too far to the left",
-                "the steering angle reads too far to the right", "deg", kDegrees,
+                "the steering angle reads too far to the right", "deg", kToDegrees,
                 "add {-size} deg to the steering angle"},
     EffectWords{"steering0.ratio", "steering ratio", "the steering angle reads too large",
                 "the steering angle reads too small", "%", 100.0,
@@ -91,13 +91,13 @@ constexpr std::array kWords{
                 1.0, kCalibrate},
     EffectWords{"cam.rotation", "direction of the cameras",
                 "{sensor} looks farther to its right than stated",
-                "{sensor} looks farther to its left than stated", "deg", kDegrees, kCalibrate},
+                "{sensor} looks farther to its left than stated", "deg", kToDegrees, kCalibrate},
     EffectWords{"cam.pitch", "pitch of the cameras", "{sensor} looks farther up than stated",
-                "{sensor} looks farther down than stated", "deg", kDegrees, kCalibrate},
+                "{sensor} looks farther down than stated", "deg", kToDegrees, kCalibrate},
     EffectWords{"cam.roll", "roll of the cameras",
                 "{sensor} is turned clockwise about its axis, unlike stated",
                 "{sensor} is turned counter-clockwise about its axis, unlike stated", "deg",
-                kDegrees, kCalibrate},
+                kToDegrees, kCalibrate},
     EffectWords{"cam.position", "position of the cameras",
                 "{sensor} is mounted farther forward than stated",
                 "{sensor} is mounted farther back than stated", "cm", 100.0, kCalibrate},
@@ -113,7 +113,7 @@ constexpr std::array kWords{
                 "{sensor} becomes darker at one moment of the drive", "%", 100.0,
                 "look at the exposure control of {sensor}"},
     EffectWords{"imu0.gyro_bias", "bias of the gyro", "the gyro turns to the left at rest",
-                "the gyro turns to the right at rest", "deg/s", kDegrees,
+                "the gyro turns to the right at rest", "deg/s", kToDegrees,
                 "add {-size} deg/s to the turn rates, or measure the bias at each stop"},
     EffectWords{"imu0.gyro_scale", "scale of the gyro", "the gyro reads turns too large",
                 "the gyro reads turns too small", "%", 100.0,
@@ -129,10 +129,10 @@ constexpr std::array kWords{
                 "correct the height of the cameras in their `T_BS`"},
     EffectWords{"ground.slope", "inclination of the vehicle",
                 "the vehicle's nose hangs lower than stated",
-                "the vehicle's nose points higher than stated", "deg", kDegrees,
+                "the vehicle's nose points higher than stated", "deg", kToDegrees,
                 "correct the pitch of the cameras in their `T_BS`, or look at load and springs"},
     EffectWords{"ground.hinge", "edges of ramps", "the ground becomes steeper at a line",
-                "the ground becomes flatter at a line", "deg", kDegrees,
+                "the ground becomes flatter at a line", "deg", kToDegrees,
                 "nothing at the car: a ramp begins or ends there", true},
     EffectWords{"map.scale", "scale of the map", "the map is too large", "the map is too small",
                 "%", 100.0, "build the map again with the corrected wheels"},

@@ -7,7 +7,6 @@
 
 #include "diagnosis/inference/check_notes.hpp"
 #include "diagnosis/inference/plausible_size.hpp"
-#include "diagnosis/inference/plausible_size.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
 
 namespace roadbook {
