@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "diagnosis/inference/checks.hpp"
 #include "diagnosis/inference/plausible_size.hpp"
@@ -188,17 +189,54 @@ void note_impossible(const ScoreTable& table,
   if (!known) impossible.push_back({c, n->score.size[0]});
 }
 
-std::vector<std::string> not_observable(const CauseModel& model, const ScoreTable& table) {
-  std::vector<std::string> names;
+namespace {
+
+// Whether an effect of twice its plausible size would be named, given its information.
+bool would_be_named(const Candidate& candidate, const Score& score) {
+  constexpr double kNamed = 5.0;  // [sigma] where half of the causes are named
+  return 2.0 * candidate.tau * std::sqrt(score.information(0, 0)) >= kNamed;
+}
+
+std::optional<std::size_t> hidden_by(const CauseModel& model,
+                                     const ScoreTable& table,
+                                     std::size_t candidate) {
+  for (std::size_t a = 0; a < model.accepted.size(); ++a)
+    if (would_be_named(table.candidates()[candidate], table.score_without(candidate, a))) return a;
+  return std::nullopt;
+}
+
+// Candidates that the drive does not show in addition to the model.
+std::vector<std::size_t> unseen(const CauseModel& model, const ScoreTable& table) {
+  std::vector<std::size_t> all;
   for (std::size_t c = 0; c < table.candidates().size(); ++c) {
     const Candidate& candidate = table.candidates()[c];
-    if (candidate.kind != CandidateKind::kNamed || is_accepted(model, candidate)) continue;
-    const Score s = table.score(c);
-    constexpr double kNamed = 5.0;  // [sigma] where half of the causes are named
-    if (2.0 * candidate.tau * std::sqrt(s.information(0, 0)) < kNamed)
-      names.push_back(candidate.name);
+    if (candidate.kind == CandidateKind::kNamed && !is_accepted(model, candidate) &&
+        !would_be_named(candidate, table.score(c)))
+      all.push_back(c);
   }
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> not_observable(const CauseModel& model, const ScoreTable& table) {
+  std::vector<std::string> names;
+  for (const std::size_t c : unseen(model, table))
+    if (!hidden_by(model, table, c)) names.push_back(table.candidates()[c].name);
   return names;
+}
+
+std::vector<HiddenEffect> hidden_effects(const CauseModel& model, const ScoreTable& table) {
+  std::vector<HiddenEffect> hidden;
+  for (const std::size_t c : unseen(model, table)) {
+    const auto a = hidden_by(model, table, c);
+    if (!a) continue;
+    const Candidate& by = model.accepted[*a].candidate;
+    hidden.push_back({table.candidates()[c].name, by.kind == CandidateKind::kGrammar
+                                                      ? by.hook + " depends on " + by.covariate
+                                                      : by.name});
+  }
+  return hidden;
 }
 
 }  // namespace roadbook

@@ -61,8 +61,12 @@ void add_refitted(const CauseProblem& problem,
 void note_impossible(const ScoreTable& table,
                      double min_evidence,
                      std::vector<Impossible>& impossible);
-/// Effects that even at twice their plausible size would not have been named.
+/// Effects that even at twice their plausible size would not have been named, whatever the model
+/// already explains by other effects.
 [[nodiscard]] std::vector<std::string> not_observable(const CauseModel& model,
                                                       const ScoreTable& table);
+/// Those that would have been named but for one accepted effect, which takes up what they change.
+[[nodiscard]] std::vector<HiddenEffect> hidden_effects(const CauseModel& model,
+                                                       const ScoreTable& table);
 
 }  // namespace roadbook

@@ -163,6 +163,8 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   d.notes = check_notes(problem.channels(), left, d.after);
   d.looked_for = result.looked_for;
   d.not_observable = result.not_observable;
+  for (const HiddenEffect& h : result.hidden)
+    d.notes.push_back(h.name + " is not separable in this drive from " + h.by);
   d.samples = problem.rows();
   d.fit_gain = result.model.log_likelihood - nominal.log_likelihood;
   for (const AcceptedEffect& v : result.verdicts) {

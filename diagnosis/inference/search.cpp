@@ -265,6 +265,11 @@ class Search {
     }
   }
 
+  static void drop_name(SearchResult& result, const std::string& name) {
+    std::erase(result.not_observable, name);
+    std::erase_if(result.hidden, [&](const HiddenEffect& h) { return h.name == name; });
+  }
+
   SearchResult conclude() {
     SearchResult result;
     const ScoreTable& table = this->table();
@@ -285,12 +290,12 @@ class Search {
     for (const Candidate& c : table.candidates())
       if (c.kind == CandidateKind::kNamed) result.looked_for.push_back(c.name);
     result.not_observable = not_observable(model_, table);
+    result.hidden = hidden_effects(model_, table);
     // An effect in a confounded set is observable.
     for (const AcceptedEffect& v : result.verdicts)
-      for (const std::string& name : v.inseparable) std::erase(result.not_observable, name);
+      for (const std::string& name : v.inseparable) drop_name(result, name);
     // So is the mean of an accepted generic effect.
-    for (const Accepted& a : model_.accepted)
-      std::erase(result.not_observable, a.candidate.named_mean);
+    for (const Accepted& a : model_.accepted) drop_name(result, a.candidate.named_mean);
     result.model = model_;
     result.impossible = impossible_;
     result.doubts = doubts_;

@@ -55,6 +55,12 @@ struct Impossible {
   double size = 0.0;
 };
 
+/// A catalogued effect that this drive shows alone, but not in addition to an accepted effect.
+struct HiddenEffect {
+  std::string name;
+  std::string by;  ///< the accepted effect; of a generic one "poses.scale depends on place"
+};
+
 struct SearchResult {
   CauseModel model;
   std::vector<FitWarning> doubts;  ///< lack of fit of the final model
@@ -62,6 +68,7 @@ struct SearchResult {
   std::vector<AcceptedEffect> verdicts;  ///< strongest first
   std::vector<std::string> looked_for;   ///< catalogued effects that were considered
   std::vector<std::string> not_observable;
+  std::vector<HiddenEffect> hidden;
 };
 
 }  // namespace roadbook

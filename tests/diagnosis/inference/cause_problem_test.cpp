@@ -67,6 +67,25 @@ TEST(CauseProblem, ColumnsAlmostAlikeAreASetAndOneWithoutChangeIsNotObservable) 
   EXPECT_EQ(d.not_observable, std::vector<std::string>{"a.tiny"});
 }
 
+// a.shadow is 99 % of the column that happened: alone the drive would show it, in addition to it
+// not. a.weak is too small for any drive of this length.
+TEST(CauseProblem, WhatAFoundEffectHidesIsNotSaidToBeUnobservable) {
+  RegressionProblem problem(21, 1000);
+  const Eigen::VectorXd happened = problem.draw();
+  problem.add("a.happened", happened);
+  problem.add("a.shadow", 0.9999 * happened + 0.014 * problem.draw());
+  problem.add("a.weak", 0.001 * problem.draw());
+  for (std::size_t c = 0; c < 3; ++c) problem.plausible(c, 1.0);
+  problem.hide(0, 1.5);
+  const Diagnosis d = diagnose(problem);
+  ASSERT_EQ(d.causes.size(), 1U);
+  EXPECT_EQ(d.causes[0].effect, "a.happened");
+  EXPECT_EQ(d.not_observable, std::vector<std::string>{"a.weak"});
+  const bool in_set = !d.causes[0].inseparable.empty();
+  const std::string note = "a.shadow is not separable in this drive from a.happened";
+  EXPECT_TRUE(in_set || std::count(d.notes.begin(), d.notes.end(), note) == 1);
+}
+
 TEST(CauseProblem, ASizeThatIsImpossibleIsSaidAndNamesNoCause) {
   RegressionProblem problem = regression(7);
   problem.bound(1, -0.1, 0.1);
