@@ -1,3 +1,5 @@
+#include "tests/diagnosis/rough_positions.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,27 +8,13 @@
 #include <string>
 
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/logs/plain_streams.hpp"
 #include "diagnosis/motion/motion_fit.hpp"
 #include "diagnosis/streams/observe.hpp"
-#include "tests/diagnosis/planar_car.hpp"
 
 namespace roadbook {
 namespace {
 
-// A receiver of satellites: positions with decimetres to metres of noise, `every` tenth of a
-// second, and no heading.
-MotionStreams with_rough_positions(std::uint64_t seed, double noise_m, std::size_t every) {
-  test::PlanarCarOptions options;
-  options.position_m = noise_m;
-  MotionStreams streams = test::PlanarCar(seed).record(options);
-  std::vector<PoseSample> kept;
-  for (std::size_t i = 0; i < streams.poses.size(); i += every) kept.push_back(streams.poses[i]);
-  streams.poses = kept;
-  derive_course(streams.poses, 1.0);
-  streams.poses_have_heading = false;
-  return streams;
-}
+using test::with_rough_positions;
 
 // The heading of the first trajectory against that of the car, which an exact recording of the same
 // seed shows.
