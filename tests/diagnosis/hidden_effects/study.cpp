@@ -14,10 +14,10 @@
 #include "tests/diagnosis/hidden_effects/study_cases.hpp"
 #include "tests/support/found_causes.hpp"
 
-// hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | lasting | effects | pairs | removed
-// | outside | correlated | columns | idle_columns | noise_pairs | noise_sizes | patches; of effects
-// only those whose name holds NAME, of nulls the scatter of the poses [m] instead of 0.02. One line
-// an effect, and every drive that went wrong.
+// hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | lasting | lasting_effects | effects
+// | pairs | removed | outside | correlated | columns | idle_columns | noise_pairs | noise_sizes |
+// patches; of effects only those whose name holds NAME, of nulls the scatter of the poses [m]
+// instead of 0.02. One line an effect, and every drive that went wrong.
 
 namespace roadbook::test {
 namespace {
@@ -160,6 +160,36 @@ void study_effects(std::size_t drives, std::uint64_t seed, int threads, const st
     print(range.name, tally);
   }
   print("all", all);
+}
+
+// One effect of the mean or of the gyro's noise beside errors of the poses that last `time_s`. The
+// correlation of the poses, which is there too, is no additional name.
+void study_lasting_effects(std::size_t drives,
+                           std::uint64_t seed,
+                           int threads,
+                           const std::string& only) {
+  for (const double time_s : {0.3, 1.0, 3.0, 10.0}) {
+    Tally tally;
+    std::size_t showable = 0;
+    for (const EffectRange& range : practical_ranges()) {
+      if (range.name.starts_with("poses.") || range.name.find(only) == std::string::npos) continue;
+      std::vector<Job> jobs(drives);
+      for (std::size_t i = 0; i < drives; ++i) {
+        Job job = job_of(range, seed, i);
+        jobs[i].hidden = drive_with_lasting_errors(time_s, job.hidden.seed);
+        jobs[i].hidden.secret[range.name] = job.hidden.secret[range.name];
+      }
+      for (Outcome& o : run_all(jobs, threads)) {
+        std::erase_if(o.found.causes,
+                      [](const FoundCause& c) { return c.effect == "poses.correlation"; });
+        showable += o.strength >= 5.0 || o.strength == 0.0 ? 1 : 0;
+        add(o, range.name, tally);
+      }
+    }
+    std::printf("errors that last %.1f s: %zu of five standard errors or noise\n", time_s,
+                showable);
+    print("all", tally);
+  }
 }
 
 void study_pairs(std::size_t drives, std::uint64_t seed, int threads) {
@@ -319,11 +349,12 @@ void study_patches(std::size_t drives, std::uint64_t seed, int threads) {
 
 int main(int count, char** words) {
   if (count < 5) {
-    std::fprintf(
-        stderr,
-        "usage: %s nulls|lasting|effects|pairs|removed|outside|correlated|columns|idle_columns|"
-        "noise_pairs|noise_sizes|patches DRIVES SEED THREADS [NAME | POSE_SIGMA_M]\n",
-        words[0]);
+    std::fprintf(stderr,
+                 "usage: %s "
+                 "nulls|lasting|lasting_effects|effects|pairs|removed|outside|correlated|columns|"
+                 "idle_columns|"
+                 "noise_pairs|noise_sizes|patches DRIVES SEED THREADS [NAME | POSE_SIGMA_M]\n",
+                 words[0]);
     return 1;
   }
   const std::string mode = words[1];
@@ -335,6 +366,8 @@ int main(int count, char** words) {
         drives, seed, threads,
         count > 5 ? std::atof(words[5]) : roadbook::test::HiddenDriveOptions{}.pose_sigma_m);
   if (mode == "lasting") roadbook::test::study_lasting(drives, seed, threads);
+  if (mode == "lasting_effects")
+    roadbook::test::study_lasting_effects(drives, seed, threads, count > 5 ? words[5] : "");
   if (mode == "effects")
     roadbook::test::study_effects(drives, seed, threads, count > 5 ? words[5] : "");
   if (mode == "pairs") roadbook::test::study_pairs(drives, seed, threads);
