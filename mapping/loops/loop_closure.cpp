@@ -8,6 +8,7 @@
 
 #include "base/parallel.hpp"
 #include "mapping/loops/corner_matches.hpp"
+#include "mapping/loops/loop_scale.hpp"
 #include "mapping/loops/odometry_check.hpp"
 #include "mapping/loops/place_recognition.hpp"
 #include "mapping/union_find.hpp"
@@ -92,13 +93,35 @@ LoopClosure verify(const Rig& rig,
   return loop;
 }
 
+// The motion between two later ends in the unit of the earlier pass: the cameras' centre moves by
+// the measured scale, the vehicle around it by the known lever arm.
+Eigen::Isometry3d rescaled(const Eigen::Isometry3d& T_to,
+                           const Eigen::Vector3d& centre,
+                           double log_scale) {
+  const Eigen::Isometry3d T_vehicle_centre(Eigen::Translation3d{centre});
+  Eigen::Isometry3d T = T_vehicle_centre.inverse() * T_to * T_vehicle_centre;
+  T.translation() *= std::exp(log_scale);
+  return T_vehicle_centre * T * T_vehicle_centre.inverse();
+}
+
 // Two edges close to each other must tell the same story: the odometry between their ends is good.
-bool edges_agree(const VoResult& odometry, const LoopEdge& a, const LoopEdge& b) {
+// Without wheels, this holds after its scale at the two passes is measured by both loops alike.
+bool edges_agree(const MappingInput& input, const LoopClosure& one, const LoopClosure& other) {
+  const LoopEdge& a = one.edge;
+  const LoopEdge& b = other.edge;
   const auto T = [&](int k) {
-    return odometry.keyframes[static_cast<std::size_t>(k)].T_odom_vehicle;
+    return input.odometry.keyframes[static_cast<std::size_t>(k)].T_odom_vehicle;
   };
   const Eigen::Isometry3d T_from = T(a.from).inverse() * T(b.from);
-  const Eigen::Isometry3d T_to = T(a.to).inverse() * T(b.to);
+  Eigen::Isometry3d T_to = T(a.to).inverse() * T(b.to);
+  if (one.log_scale_sigma > 0.0 && other.log_scale_sigma > 0.0) {
+    constexpr double kSigmas = 3.0;
+    constexpr double kDrift = 0.1;  // of the scale between two neighbouring loops
+    if (std::abs(one.log_scale - other.log_scale) >
+        kDrift + kSigmas * std::hypot(one.log_scale_sigma, other.log_scale_sigma))
+      return false;
+    T_to = rescaled(T_to, centre_of_cameras(input.rig_of(a.to)), one.log_scale);
+  }
   const Eigen::Isometry3d difference = (a.T_from_to * T_to).inverse() * (T_from * b.T_from_to);
   const double path = T_from.translation().norm() + T_to.translation().norm();
   return difference.translation().norm() < 0.15 + 0.1 * path &&
@@ -106,7 +129,7 @@ bool edges_agree(const VoResult& odometry, const LoopEdge& a, const LoopEdge& b)
 }
 
 // Returns the number of each loop's stretch: neighbours that agree, and the neighbours of these.
-std::vector<int> require_agreement(const VoResult& odometry,
+std::vector<int> require_agreement(const MappingInput& input,
                                    const LoopOptions& options,
                                    std::vector<LoopClosure>& loops) {
   constexpr int kNeighbours = 12;
@@ -119,7 +142,7 @@ std::vector<int> require_agreement(const VoResult& odometry,
       if (!loops[j].edge.accepted || loops[j].edge.to == loops[i].edge.to ||
           std::abs(loops[j].edge.from - loops[i].edge.from) > 3 * kNeighbours)
         continue;
-      if (!edges_agree(odometry, loops[i].edge, loops[j].edge)) continue;
+      if (!edges_agree(input, loops[i], loops[j])) continue;
       supported[i] = supported[j] = 1;
       stretches.join(static_cast<int>(i), static_cast<int>(j));
     }
@@ -186,6 +209,11 @@ std::vector<LoopClosure> verify_loops(const MappingInput& input,
         segments[earlier] == segments[later] && has_wheels && std::abs(heading_of(T)) < kSameWayRad;
     loops[i] = verify(input.rig_of(pairs[i].later), input.odometry, pairs[i].earlier,
                       pairs[i].later, !same_way, options);
+    if (has_wheels || !loops[i].edge.accepted) return;
+    const auto scale = scale_of_loop(input.rig_of(pairs[i].later), input.odometry, loops[i]);
+    if (!scale) return;
+    loops[i].log_scale = scale->log_scale;
+    loops[i].log_scale_sigma = scale->sigma;
   };
   constexpr std::size_t kBlock = 96;
   for (std::size_t begin = 0; begin < pairs.size(); begin += kBlock) {
@@ -193,7 +221,7 @@ std::vector<LoopClosure> verify_loops(const MappingInput& input,
     parallel_for(count, options.num_threads, [&](std::size_t i) { verify_pair(begin + i); });
     report(progress, "loops", begin + count, pairs.size());
   }
-  const std::vector<int> stretches = require_agreement(input.odometry, options, loops);
+  const std::vector<int> stretches = require_agreement(input, options, loops);
   reject_by_odometry(input, stretches, loops);
   return loops;
 }

@@ -39,6 +39,10 @@ struct FeatureMatch {
 struct LoopClosure {
   LoopEdge edge;  ///< from: earlier keyframe, to: later one
   std::vector<FeatureMatch> matches;
+  /// Without wheels, the scale of the later pass relative to the earlier one
+  /// (mapping/loops/loop_scale.hpp); `edge` is in units of the earlier pass.
+  double log_scale = 0.0;
+  double log_scale_sigma = 0.0;  ///< 0: not measured
 };
 
 /// For each keyframe the index of its segment, counted from 0. A new segment begins after each gap.

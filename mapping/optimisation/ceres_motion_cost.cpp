@@ -101,6 +101,43 @@ bool MotionCost::Evaluate(const double* const* parameters,
   return true;
 }
 
+ScaledMotionCost::ScaledMotionCost(const RelativePose& edge, const double* weight)
+    : T_from_to_(edge.T_from_to),
+      root_(root_of(edge.information)),
+      log_scale_(edge.log_scale),
+      inverse_sigma_(edge.log_scale_sigma > 0.0 ? 1.0 / edge.log_scale_sigma : 0.0),
+      weight_(weight) {}
+
+bool ScaledMotionCost::Evaluate(const double* const* parameters,
+                                double* residuals,
+                                double** jacobians) const {
+  const ScaledMotionResidual e = scaled_motion_residual(
+      pose_of(parameters[0]), pose_of(parameters[1]), T_from_to_, parameters[2][0]);
+  const double factor = weight_ != nullptr ? std::sqrt(*weight_) : 1.0;
+  const Matrix6d root = factor * root_;
+  Eigen::Map<Vector6d> r(residuals);
+  r = root * e.r;
+  residuals[6] = factor * inverse_sigma_ * (parameters[3][0] - parameters[2][0] - log_scale_);
+  if (jacobians == nullptr) return true;
+  for (int block = 0; block < 2; ++block) {
+    if (jacobians[block] == nullptr) continue;
+    Eigen::Map<Eigen::Matrix<double, 7, 7, Eigen::RowMajor>> J(jacobians[block]);
+    J.setZero();
+    J.topLeftCorner<6, 6>() = root * (block == 0 ? e.J_from : e.J_to);
+  }
+  if (jacobians[2] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, 7, 1>> J(jacobians[2]);
+    J.head<6>() = root * e.J_log_scale;
+    J[6] = -factor * inverse_sigma_;
+  }
+  if (jacobians[3] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, 7, 1>> J(jacobians[3]);
+    J.setZero();
+    J[6] = factor * inverse_sigma_;
+  }
+  return true;
+}
+
 bool PosePriorCost::Evaluate(const double* const* parameters,
                              double* residuals,
                              double** jacobians) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/se3.hpp"
+#include "mapping/optimisation/pose_graph.hpp"
 
 namespace roadbook {
 
@@ -53,6 +54,25 @@ class MotionCost : public ceres::CostFunction {
  private:
   Eigen::Isometry3d T_from_to_;
   Matrix6d root_;
+  const double* weight_;
+};
+
+/// Residual of a measured motion and relative scale between two poses of unknown scale: six numbers
+/// of `scaled_motion_residual`, then `(log s_to - log s_from - log_scale) / log_scale_sigma`.
+/// Parameter blocks: pose `from`, pose `to`, and the logarithms of their scales. `weight` as for
+/// MotionCost.
+class ScaledMotionCost : public ceres::SizedCostFunction<7, 7, 7, 1, 1> {
+ public:
+  ScaledMotionCost(const RelativePose& edge, const double* weight);
+  bool Evaluate(const double* const* parameters,
+                double* residuals,
+                double** jacobians) const override;
+
+ private:
+  Eigen::Isometry3d T_from_to_;
+  Matrix6d root_;
+  double log_scale_;
+  double inverse_sigma_;  // of the relative scale; 0: not measured
   const double* weight_;
 };
 

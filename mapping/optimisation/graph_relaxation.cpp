@@ -28,6 +28,8 @@ void check_edges(const PoseGraph& graph,
       fail("scale", std::to_string(e.scale), "a scale of the graph or -1");
     if (!e.T_from_to.matrix().allFinite() || !e.information.allFinite())
       fail("T_from_to", "not finite", "finite numbers");
+    if (!std::isfinite(e.log_scale) || !(e.log_scale_sigma >= 0.0))
+      fail("log_scale", "not finite", "a finite number with a standard deviation of at least 0");
   }
 }
 
@@ -40,6 +42,8 @@ void check_graph(const PoseGraph& graph) {
     fail("fixed", std::to_string(graph.fixed), "a pose of the graph");
   for (const Eigen::Isometry3d& T : graph.T_map_vehicle)
     if (!T.matrix().allFinite()) fail("T_map_vehicle", "not finite", "finite numbers");
+  if (!graph.pose_scales.empty() && graph.pose_scales.size() != graph.T_map_vehicle.size())
+    fail("pose_scales", std::to_string(graph.pose_scales.size()) + " scales", "none or one a pose");
   check_edges(graph, graph.odometry, "odometry");
   check_edges(graph, graph.loops, "loops");
 }
@@ -64,6 +68,7 @@ struct Relaxation {
         solver(g, all_edges(g)) {
     state.poses = g.T_map_vehicle;
     for (const ScaleParameter& scale : g.scales) state.scales.push_back(scale.value);
+    for (const PoseScale& scale : g.pose_scales) state.log_scales.push_back(scale.log_scale);
     for (const RelativePose* edge : all_edges(g)) edges.push_back({edge, 1.0});
   }
 
@@ -107,6 +112,8 @@ void Relaxation::find_false_loops(const Progress& progress) {
   double mu = c2 / (2.0 * worst - c2);
   constexpr int kMostSteps = 200;
   constexpr double kStepTolerance = 1e-2;  // weights change at every step: no need for the optimum
+  // Scales bend the whole way behind them: linearised steps are shorter.
+  const int more_iterations = graph.pose_scales.empty() ? 0 : 4;
   for (int step = 0; step < kMostSteps; ++step) {
     report(progress, "pose graph", static_cast<std::size_t>(step), 0);
     bool decided = true;
@@ -116,7 +123,7 @@ void Relaxation::find_false_loops(const Progress& progress) {
       loop_edge(k).weight = weights[k] / crowding[k];
     }
     if (decided && mu > 1.0) break;
-    minimise(decided ? 3 : 2, kStepTolerance);
+    minimise((decided ? 3 : 2) + more_iterations, kStepTolerance);
     chi2 = loop_chi2();
     mu *= options.gnc_factor;
   }
@@ -148,6 +155,7 @@ void fill_result(Relaxation& run, const GraphState& start, PoseGraphResult& resu
   result.final_chi2 = graph_chi2(run.graph, run.edges, run.state);
   result.T_map_vehicle = run.state.poses;
   result.scales = run.state.scales;
+  result.log_scales = run.state.log_scales;
   result.loop_weights = run.weights;
   result.loop_chi2 = run.loop_chi2();
   result.iterations = run.iterations;

@@ -24,6 +24,7 @@ namespace roadbook {
 struct PoseGraphResult {
   std::vector<Eigen::Isometry3d> T_map_vehicle;
   std::vector<double> scales;
+  std::vector<double> log_scales;           ///< of each pose; empty without PoseGraph::pose_scales
   std::vector<double> loop_weights;         ///< 0..1, of the robust solver
   std::vector<std::uint8_t> loop_accepted;  ///< took part in the final relaxation
   std::vector<double> loop_chi2;            ///< squared normalised residual at the end

@@ -1,5 +1,7 @@
 #include "mapping/optimisation/motion_residual.hpp"
 
+#include <cmath>
+
 namespace roadbook {
 
 Vector6d motion_error(const Eigen::Isometry3d& T_map_from,
@@ -38,6 +40,21 @@ MotionResidual motion_residual(const Eigen::Isometry3d& T_map_from,
   m.J_scale.head<3>() = -R_zt * T_from_to.translation();
   m.J_scale.tail<3>().setZero();
   return m;
+}
+
+ScaledMotionResidual scaled_motion_residual(const Eigen::Isometry3d& T_map_from,
+                                            const Eigen::Isometry3d& T_map_to,
+                                            const Eigen::Isometry3d& T_from_to,
+                                            double log_scale) {
+  const double unit_m = std::exp(log_scale);
+  const MotionResidual m = motion_residual(T_map_from, T_map_to, T_from_to, unit_m);
+  ScaledMotionResidual scaled{m.r, m.J_from, m.J_to, Vector6d::Zero()};
+  scaled.r.head<3>() /= unit_m;
+  scaled.J_from.topRows<3>() /= unit_m;
+  scaled.J_to.topRows<3>() /= unit_m;
+  scaled.J_log_scale.head<3>() =
+      -scaled.r.head<3>() - T_from_to.linear().transpose() * T_from_to.translation();
+  return scaled;
 }
 
 }  // namespace roadbook

@@ -38,4 +38,18 @@ struct MotionResidual {
                                              const Eigen::Isometry3d& T_from_to,
                                              double scale);
 
+/// Residual of a motion between poses of unknown scale, and its derivatives. In E = Z^-1 *
+/// T_from^-1
+/// * T_to, the motion of the poses [m] is divided by the metres a unit of `from`.
+struct ScaledMotionResidual {
+  Vector6d r;
+  Matrix6d J_from;
+  Matrix6d J_to;
+  Vector6d J_log_scale;  ///< by the logarithm of metres a unit of `from`
+};
+[[nodiscard]] ScaledMotionResidual scaled_motion_residual(const Eigen::Isometry3d& T_map_from,
+                                                          const Eigen::Isometry3d& T_map_to,
+                                                          const Eigen::Isometry3d& T_from_to,
+                                                          double log_scale);
+
 }  // namespace roadbook

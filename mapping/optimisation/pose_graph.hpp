@@ -11,13 +11,24 @@ namespace roadbook {
 // A graph of vehicle poses that odometry and loop closures join, and the options for its relaxation
 // (mapping/optimisation/graph_relaxation.hpp).
 
-/// Measured motion between two poses.
+/// Measured motion between two poses. In a graph with `PoseGraph::pose_scales`, its translation is
+/// in units of `from`.
 struct RelativePose {
   int from = 0;
   int to = 0;
   Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
   Matrix6d information = Matrix6d::Identity();  ///< of T_from_to's right perturbation
   int scale = -1;  ///< index in PoseGraph::scales of the factor on the translation; -1: none
+  double log_scale = 0.0;        ///< measured log(metres a unit of `to` / metres a unit of `from`)
+  double log_scale_sigma = 0.0;  ///< its standard deviation; 0: not measured
+};
+
+/// Scale of a pose that cameras alone measured: the similarity of its surroundings to the map.
+struct PoseScale {
+  double log_scale = 0.0;  ///< of metres a unit: start value
+  double prior = 0.0;      ///< of `log_scale`, for example by the cameras' height; robust (Cauchy)
+  double prior_sigma = 0.0;  ///< 0: no prior
+  bool fixed = false;
 };
 
 struct PoseGraph {
@@ -27,6 +38,7 @@ struct PoseGraph {
   std::vector<RelativePose> odometry;
   std::vector<RelativePose> loops;
   std::vector<ScaleParameter> scales;  ///< e.g. one a session
+  std::vector<PoseScale> pose_scales;  ///< of each pose; empty: all poses are in metres
   int fixed = 0;                       ///< this pose does not move (gauge)
 };
 

@@ -1,5 +1,9 @@
 #include "mapping/optimisation/pose_graph_solver.hpp"
 
+#include <ceres/loss_function.h>
+
+#include <cmath>
+
 #include "base/index.hpp"
 #include "mapping/optimisation/ceres_motion_cost.hpp"
 #include "mapping/optimisation/ceres_solve.hpp"
@@ -17,6 +21,17 @@ constexpr double kTrustRegionRadius = 1e8;
 }  // namespace
 
 double edge_chi2(const RelativePose& edge, const GraphState& state) {
+  if (!state.log_scales.empty()) {
+    const double from = state.log_scales[at(edge.from)];
+    const Vector6d e = scaled_motion_residual(state.poses[at(edge.from)], state.poses[at(edge.to)],
+                                              edge.T_from_to, from)
+                           .r;
+    const double scale =
+        edge.log_scale_sigma > 0.0
+            ? (state.log_scales[at(edge.to)] - from - edge.log_scale) / edge.log_scale_sigma
+            : 0.0;
+    return e.dot(edge.information * e) + scale * scale;
+  }
   const Vector6d r = motion_error(state.poses[at(edge.from)], state.poses[at(edge.to)],
                                   edge.T_from_to, scale_of(edge, state));
   return r.dot(edge.information * r);
@@ -33,6 +48,12 @@ double graph_chi2(const PoseGraph& graph,
     const double r = (state.scales[s] - graph.scales[s].prior) / graph.scales[s].prior_sigma;
     chi2 += r * r;
   }
+  for (std::size_t i = 0; i < graph.pose_scales.size(); ++i) {
+    const PoseScale& scale = graph.pose_scales[i];
+    if (scale.fixed || !(scale.prior_sigma > 0.0)) continue;
+    const double r = (state.log_scales[i] - scale.prior) / scale.prior_sigma;
+    chi2 += std::log1p(r * r);  // Cauchy
+  }
   return chi2;
 }
 
@@ -40,22 +61,40 @@ struct GraphSolver::Unknowns {
   std::size_t fixed;
   std::vector<PoseBlock> poses;
   std::vector<double> scales;
-  std::vector<double> weights;  // of the edges
+  std::vector<double> log_scales;  // of the poses
+  std::vector<double> weights;     // of the edges
   PoseManifold manifold;
+  ceres::CauchyLoss scale_loss{1.0};
   ceres::Problem problem{ceres_problem_options()};
 
   Unknowns(const PoseGraph& graph, const std::vector<const RelativePose*>& edges)
       : fixed(at(graph.fixed)),
         poses(graph.T_map_vehicle.size()),
         scales(graph.scales.size()),
+        log_scales(graph.pose_scales.size()),
         weights(edges.size(), 1.0) {
     for (PoseBlock& pose : poses) problem.AddParameterBlock(pose.data(), 7, &manifold);
     problem.SetParameterBlockConstant(poses[fixed].data());
+    for (std::size_t i = 0; i < log_scales.size(); ++i)
+      add_pose_scale(graph.pose_scales[i], &log_scales[i]);
     for (std::size_t k = 0; k < edges.size(); ++k) add_edge(*edges[k], &weights[k]);
     for (std::size_t s = 0; s < scales.size(); ++s) add_prior(graph.scales[s], &scales[s]);
   }
 
+  void add_pose_scale(const PoseScale& scale, double* value) {
+    problem.AddParameterBlock(value, 1);
+    if (scale.prior_sigma > 0.0)
+      problem.AddResidualBlock(new ScalePriorCost(scale.prior, scale.prior_sigma), &scale_loss,
+                               value);
+    if (scale.fixed) problem.SetParameterBlockConstant(value);
+  }
   void add_edge(const RelativePose& edge, const double* weight) {
+    if (!log_scales.empty()) {
+      problem.AddResidualBlock(new ScaledMotionCost(edge, weight), nullptr,
+                               poses[at(edge.from)].data(), poses[at(edge.to)].data(),
+                               &log_scales[at(edge.from)], &log_scales[at(edge.to)]);
+      return;
+    }
     const bool has_scale = edge.scale >= 0;
     std::vector<double*> blocks{poses[at(edge.from)].data(), poses[at(edge.to)].data()};
     if (has_scale) blocks.push_back(&scales[at(edge.scale)]);
@@ -69,6 +108,7 @@ struct GraphSolver::Unknowns {
   void set(const GraphState& state, const std::vector<WeightedEdge>& edges) {
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = block_of(state.poses[i]);
     scales = state.scales;
+    log_scales = state.log_scales;
     for (std::size_t k = 0; k < edges.size(); ++k) weights[k] = edges[k].weight;
   }
 };
@@ -88,6 +128,7 @@ GraphSolver::Outcome GraphSolver::minimise(const std::vector<WeightedEdge>& edge
   for (std::size_t i = 0; i < state.poses.size(); ++i)
     if (i != unknowns_->fixed) state.poses[i] = pose_of(unknowns_->poses[i].data());
   state.scales = unknowns_->scales;
+  state.log_scales = unknowns_->log_scales;
   return {outcome.iterations, outcome.converged};
 }
 

@@ -17,6 +17,7 @@ struct WeightedEdge {
 struct GraphState {
   std::vector<Eigen::Isometry3d> poses;  ///< T_map_vehicle
   std::vector<double> scales;
+  std::vector<double> log_scales;  ///< of the poses (PoseGraph::pose_scales)
 };
 
 /// Squared normalised residual of one edge.

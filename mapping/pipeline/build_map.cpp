@@ -13,6 +13,7 @@
 #include "mapping/pipeline/map_inputs.hpp"
 #include "mapping/pipeline/map_paths.hpp"
 #include "mapping/pipeline/map_stages.hpp"
+#include "mapping/pipeline/scaled_relaxation.hpp"
 #include "mapping/pipeline/short_segments.hpp"
 #include "mapping/pipeline/stage_clock.hpp"
 #include "mapping/store/map_file.hpp"
@@ -136,18 +137,27 @@ void build_from(const std::vector<Drive>& drives,
   }
   MappingInput input = join_drives(std::move(odometry), rigs, has_wheels);
   std::vector<std::optional<double>> ground_sigma(drives.size());
+  std::vector<LocalScale> heights;
   clock.run("scale", [&] {
     for (std::size_t i = 0; i < drives.size(); ++i) {
       const int session = static_cast<int>(i);
       if (!has_motion_without_wheels(input, session)) continue;
-      const auto sigma = scale_by_ground(input, session, options);
-      if (!has_wheels[i]) ground_sigma[i] = sigma;
+      if (has_wheels[i]) {
+        (void)scale_by_ground(input, session, options);
+        continue;
+      }
+      const SessionScale scale = scale_session(input, session, options);
+      ground_sigma[i] = scale.sigma;
+      heights.insert(heights.end(), scale.windows.begin(), scale.windows.end());
     }
     return 0;
   });
   auto loops = clock.run("loops", [&] { return loops_of(input, options, build, progress); });
-  const auto relaxed =
-      clock.run("pose graph", [&] { return relax_poses(input, loops, options, progress); });
+  const auto relaxed = clock.run("pose graph", [&] {
+    return std::find(has_wheels.begin(), has_wheels.end(), false) == has_wheels.end()
+               ? relax_poses(input, loops, options, progress)
+               : relax_scaled_poses(input, heights, loops, options, progress);
+  });
   const GateInputs gate = gate_inputs(folders, map_path);
   require_sound_graph(drives, input, loops, relaxed, gate, options, summary);
   if (relaxed.components > 1)

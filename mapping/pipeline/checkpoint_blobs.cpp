@@ -211,6 +211,8 @@ std::string loops_to_blob(const std::vector<LoopClosure>& loops) {
     w.value(loop.edge.weight);
     w.text(loop.edge.reason);
     w.values(loop.matches);
+    w.value(loop.log_scale);
+    w.value(loop.log_scale_sigma);
   }
   return w.take();
 }
@@ -228,6 +230,8 @@ std::vector<LoopClosure> loops_from_blob(std::string_view blob) {
     loop.edge.weight = r.value<double>();
     loop.edge.reason = r.text();
     loop.matches = r.values<FeatureMatch>();
+    loop.log_scale = r.value<double>();
+    loop.log_scale_sigma = r.value<double>();
   }
   return loops;
 }

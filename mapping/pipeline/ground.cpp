@@ -13,6 +13,9 @@ namespace {
 constexpr double kCell = 4.0;
 constexpr double kLargestDrift = 0.7;  // of odometry's scale over a stretch, as a logarithm
 
+constexpr double kLeastHeightM = 0.05;  // of a camera whose height is known
+constexpr double kWindowSigma = 0.03;   // of a window's scale: slopes, kerbs, pitch of the car
+
 double camera_height(const Rig& rig) {
   double sum = 0.0;
   for (const auto& mounted : rig.cameras) sum += mounted.T_vehicle_camera.translation().z();
@@ -20,6 +23,12 @@ double camera_height(const Rig& rig) {
 }
 
 }  // namespace
+
+std::optional<double> known_camera_height(const Rig& rig) {
+  if (rig.cameras.empty()) return std::nullopt;
+  const double height = camera_height(rig);
+  return height > kLeastHeightM ? std::optional(height) : std::nullopt;
+}
 
 std::vector<GroundView> view_from_above(const MappingInput& input,
                                         const std::vector<Eigen::Isometry3d>& T_map_vehicle,
@@ -108,6 +117,9 @@ ScaleProfile ground_scale_profile(const MappingInput& input,
       const std::size_t half = static_cast<std::size_t>(window) / 2;
       const auto local =
           estimate(k > begin + half ? k - half : begin, std::min(end, k + half), segments[begin]);
+      if (local)
+        profile.local.push_back(
+            {static_cast<int>(k), std::log(local->scale), std::hypot(kWindowSigma, local->sigma)});
       // A window without enough ground, or with one that cannot be, takes that of the whole
       // stretch.
       const bool believed =

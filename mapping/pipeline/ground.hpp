@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "mapping/joined_tracks.hpp"
@@ -42,11 +43,24 @@ struct GroundOptions {
                              double level_m,
                              const GroundOptions& options = {});
 
+/// Scale of odometry around one keyframe.
+struct LocalScale {
+  int keyframe = 0;
+  double log_scale = 0.0;  ///< of metres a unit
+  double sigma = 0.0;      ///< standard deviation; slopes and kerbs included
+};
+
 struct ScaleProfile {
   std::vector<double> factor;  ///< on the motion from each keyframe to the next
   bool found = false;          ///< false: too few ground points
   double sigma = 0.0;          ///< relative standard deviation of the overall scale
+  /// Estimates of all windows with enough ground, plausible or not; ascending keyframes.
+  std::vector<LocalScale> local;
 };
+
+/// Mean height [m] of the cameras above the vehicle frame's origin, which lies on the ground; empty
+/// if it is not known: the calibration of a camera that nobody measured states 0.
+[[nodiscard]] std::optional<double> known_camera_height(const Rig& rig);
 
 /// Estimates the factors that scale odometry without wheels to metres, from the cameras' height
 /// above ground in a window of `window` keyframes around each keyframe. A window with too few

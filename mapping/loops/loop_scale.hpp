@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "mapping/loops/loop_closure.hpp"
+
+namespace roadbook {
+
+// Relative scale of the two sides of a loop. Odometry by cameras alone has a scale that drifts, so
+// that one unit of it has another length at the two passes.
+
+/// Logarithm of (metres a unit at `to`) / (metres a unit at `from`).
+struct LoopScale {
+  double log_scale = 0.0;
+  double sigma = 0.0;  ///< standard deviation
+};
+
+/// Mean of the cameras' places on the vehicle [m]. Motions without a scale are motions of this
+/// point: the vehicle's own origin also moves by the lever arm, which is known in metres.
+[[nodiscard]] Eigen::Vector3d centre_of_cameras(const Rig& rig);
+
+/// Scale from the corners of `loop.matches` that both passes triangulated: median over corners of
+/// the logarithm of (distance from the later camera by the places of the earlier pass and
+/// `loop.edge.T_from_to`) / (the same distance by the places of the later pass). Empty with fewer
+/// than 6 such corners.
+[[nodiscard]] std::optional<LoopScale> scale_of_loop(const Rig& rig,
+                                                     const VoResult& odometry,
+                                                     const LoopClosure& loop);
+
+}  // namespace roadbook
