@@ -210,7 +210,8 @@ std::vector<LoopClosure> verify_loops(const MappingInput& input,
     loops[i] = verify(input.rig_of(pairs[i].later), input.odometry, pairs[i].earlier,
                       pairs[i].later, !same_way, options);
     if (has_wheels || !loops[i].edge.accepted) return;
-    const auto scale = scale_of_loop(input.rig_of(pairs[i].later), input.odometry, loops[i]);
+    const auto scale = scale_of_loop(input.rig_of(pairs[i].later), input.odometry, loops[i].edge,
+                                     loops[i].matches);
     if (!scale) return;
     loops[i].log_scale = scale->log_scale;
     loops[i].log_scale_sigma = scale->sigma;

@@ -5,6 +5,7 @@
 
 #include "base/progress.hpp"
 #include "mapping/joined_tracks.hpp"
+#include "mapping/loops/feature_match.hpp"
 #include "mapping/map.hpp"
 
 namespace roadbook {
@@ -25,14 +26,6 @@ struct LoopOptions {
   double max_ratio = 0.88;            ///< nearest over second-nearest descriptor distance
   double inlier_px = 3.0;             ///< half-size image
   int num_threads = 0;
-};
-
-/// Two key points that show the same corner.
-struct FeatureMatch {
-  int from_camera = 0;
-  int from_feature = 0;
-  int to_camera = 0;
-  int to_feature = 0;
 };
 
 /// A revisit and its matches. Rejected ones are kept, with the reason in `edge`.

@@ -5,15 +5,10 @@
 #include <vector>
 
 #include "base/index.hpp"
+#include "base/median.hpp"
 
 namespace roadbook {
 namespace {
-
-double median_in_place(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Place of the corner in the keyframe's vehicle frame, in the odometry's unit there.
 std::optional<Eigen::Vector3d> place_of(const VoResult& odometry,
@@ -36,16 +31,17 @@ Eigen::Vector3d centre_of_cameras(const Rig& rig) {
 
 std::optional<LoopScale> scale_of_loop(const Rig& rig,
                                        const VoResult& odometry,
-                                       const LoopClosure& loop) {
+                                       const LoopEdge& edge,
+                                       const std::vector<FeatureMatch>& matches) {
   constexpr std::size_t kFewest = 6;
   constexpr double kLeastSigma = 0.02;     // corners of one view share the errors of its poses
   constexpr double kIndependent = 0.25;    // share of the corners that count as independent
   constexpr double kSigmaPerMad = 1.4826;  // of a normal distribution
-  const Eigen::Isometry3d T_to_from = loop.edge.T_from_to.inverse();
+  const Eigen::Isometry3d T_to_from = edge.T_from_to.inverse();
   std::vector<double> logs;
-  for (const FeatureMatch& m : loop.matches) {
-    const auto p_from = place_of(odometry, loop.edge.from, m.from_camera, m.from_feature);
-    const auto p_to = place_of(odometry, loop.edge.to, m.to_camera, m.to_feature);
+  for (const FeatureMatch& m : matches) {
+    const auto p_from = place_of(odometry, edge.from, m.from_camera, m.from_feature);
+    const auto p_to = place_of(odometry, edge.to, m.to_camera, m.to_feature);
     if (!p_from || !p_to) continue;
     const Eigen::Vector3d camera = rig.cameras[at(m.to_camera)].T_vehicle_camera.translation();
     const double by_earlier = (T_to_from * *p_from - camera).norm();
@@ -54,9 +50,9 @@ std::optional<LoopScale> scale_of_loop(const Rig& rig,
   }
   if (logs.size() < kFewest) return std::nullopt;
   LoopScale scale;
-  scale.log_scale = median_in_place(logs);
+  scale.log_scale = median(logs);
   for (double& log : logs) log = std::abs(log - scale.log_scale);
-  const double spread = kSigmaPerMad * median_in_place(logs);
+  const double spread = kSigmaPerMad * median(logs);
   scale.sigma =
       std::hypot(kLeastSigma, spread / std::sqrt(kIndependent * static_cast<double>(logs.size())));
   return scale;

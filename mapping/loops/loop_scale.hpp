@@ -2,8 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <vector>
 
-#include "mapping/loops/loop_closure.hpp"
+#include "mapping/joined_tracks.hpp"
+#include "mapping/loops/feature_match.hpp"
+#include "mapping/map.hpp"
 
 namespace roadbook {
 
@@ -20,12 +23,13 @@ struct LoopScale {
 /// point: the vehicle's own origin also moves by the lever arm, which is known in metres.
 [[nodiscard]] Eigen::Vector3d centre_of_cameras(const Rig& rig);
 
-/// Scale from the corners of `loop.matches` that both passes triangulated: median over corners of
+/// Scale from the corners of a loop's matches that both passes triangulated: median over corners of
 /// the logarithm of (distance from the later camera by the places of the earlier pass and
-/// `loop.edge.T_from_to`) / (the same distance by the places of the later pass). Empty with fewer
-/// than 6 such corners.
+/// `edge.T_from_to`) / (the same distance by the places of the later pass). Empty with fewer than 6
+/// such corners.
 [[nodiscard]] std::optional<LoopScale> scale_of_loop(const Rig& rig,
                                                      const VoResult& odometry,
-                                                     const LoopClosure& loop);
+                                                     const LoopEdge& edge,
+                                                     const std::vector<FeatureMatch>& matches);
 
 }  // namespace roadbook

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
 #include <tuple>
-#include <utility>
 
-#include "mapping/pipeline/bundle_views.hpp"
 #include "vo/planar_motion.hpp"
 
 namespace roadbook {
@@ -36,19 +37,17 @@ class Quota {
       }
     }
   }
-  // Whether at least half of the images need the key points: a track that only few of its images
-  // need would fill up the others.
-  [[nodiscard]] bool wants(const std::vector<KeyPointId>& views) {
+  bool take(const std::vector<KeyPointId>& views) {
     int wanted = 0;
     for (const auto& view : views) wanted += wants(view) ? 1 : 0;
-    return 2 * wanted >= static_cast<int>(views.size());
-  }
-  void take(const std::vector<KeyPointId>& views) {
+    // A track that only few of its images need would fill up the others.
+    if (2 * wanted < static_cast<int>(views.size())) return false;
     for (const auto& view : views) {
       Image& image = image_of(view);
       ++image.total;
       ++image.taken[cell_of(view)];
     }
+    return true;
   }
 
  private:
@@ -78,60 +77,45 @@ class Quota {
   std::vector<std::vector<Image>> images_;
 };
 
-// Key points of a corner that may take part.
-struct CornerViews {
-  std::vector<KeyPointId> base;     // of all chosen base passes
-  std::vector<CornerPass> further;  // one of them may be added; the first is the best for geometry
-  std::size_t size = 0;             // with the best further pass
-};
+// A key point this many keyframes after the previous one belongs to another pass.
+constexpr int kPassGapKeyframes = 20;
 
-CornerViews views_of_corner(const JoinedTrack& track,
-                            const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                            const std::vector<std::uint8_t>& is_base,
-                            const BundleStageOptions& options) {
-  CornerViews views;
-  auto passes = passes_of(track, T_map_vehicle, options.reach_keyframes);
-  const auto chosen =
-      choose_base_passes(passes, *track.p_map, T_map_vehicle, is_base, options.base_passes);
-  for (const std::size_t i : chosen)
-    views.base.insert(views.base.end(), passes[i].views.begin(), passes[i].views.end());
-  for (const std::size_t i : order_further_passes(passes, chosen, *track.p_map, T_map_vehicle))
-    views.further.push_back(std::move(passes[i]));
-  views.size = views.base.size() + (views.further.empty() ? 0 : views.further[0].views.size());
-  return views;
-}
-
-// The key points that the images still need; empty: the corner takes no part. The chosen further
-// pass leaves `corner`. `with_base_alone`: the corner may take part without a further pass.
-std::vector<KeyPointId> take_views(CornerViews& corner, bool with_base_alone, Quota& quota) {
-  std::vector<KeyPointId> taken = corner.base;
-  const auto further =
-      std::find_if(corner.further.begin(), corner.further.end(), [&](const CornerPass& pass) {
-        return corner.base.size() + pass.views.size() > 1 && quota.wants(pass.views);
-      });
-  if (further != corner.further.end()) {
-    taken.insert(taken.end(), further->views.begin(), further->views.end());
-    corner.further.erase(further);
-  } else if (!with_base_alone || taken.size() < 2 || !quota.wants(taken)) {
-    return {};
+// The key points of each pass around the keyframe nearest to the corner.
+std::vector<KeyPointId> nearest_views(const JoinedTrack& track,
+                                      const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                      int reach_keyframes) {
+  std::vector<KeyPointId> kept;
+  const auto& views = track.views;
+  for (std::size_t begin = 0, end = 0; begin < views.size(); begin = end) {
+    int nearest = views[begin].keyframe;
+    double least = std::numeric_limits<double>::max();
+    for (end = begin;
+         end < views.size() &&
+         (end == begin || views[end].keyframe - views[end - 1].keyframe <= kPassGapKeyframes);
+         ++end) {
+      const int k = views[end].keyframe;
+      const double distance =
+          (T_map_vehicle[static_cast<std::size_t>(k)].translation() - *track.p_map).norm();
+      if (distance >= least) continue;
+      least = distance;
+      nearest = k;
+    }
+    for (std::size_t i = begin; i < end; ++i)
+      if (std::abs(views[i].keyframe - nearest) <= reach_keyframes) kept.push_back(views[i]);
   }
-  std::sort(taken.begin(), taken.end(), [](const KeyPointId& a, const KeyPointId& b) {
-    return std::tuple(a.keyframe, a.camera) < std::tuple(b.keyframe, b.camera);
-  });
-  quota.take(taken);
-  return taken;
+  return kept;
 }
 
 // Revisited and long tracks first; before them ground points where only they give the scale.
 std::vector<std::size_t> by_worth(const std::vector<JoinedTrack>& tracks,
-                                  const std::vector<CornerViews>& views,
+                                  const std::vector<std::vector<KeyPointId>>& views,
                                   const std::vector<std::uint8_t>& gives_scale) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < tracks.size(); ++i)
-    if (views[i].size > 1) order.push_back(i);
+    if (views[i].size() > 1) order.push_back(i);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto worth = [&](std::size_t i) {
-      return std::tuple(gives_scale[i], tracks[i].revisited, views[i].size);
+      return std::tuple(gives_scale[i], tracks[i].revisited, views[i].size());
     };
     return worth(a) > worth(b);
   });
@@ -175,10 +159,9 @@ BundleStage make_bundle(const MappingInput& input,
   for (const auto& T : T_map_vehicle) stage.problem.poses.push_back({T, false});
   add_motions(input, options, stage);
 
-  const auto is_base = find_base_keyframes(T_map_vehicle, options.base_passes);
-  std::vector<CornerViews> near(tracks.size());
+  std::vector<std::vector<KeyPointId>> near(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i)
-    if (tracks[i].p_map) near[i] = views_of_corner(tracks[i], T_map_vehicle, is_base, options);
+    if (tracks[i].p_map) near[i] = nearest_views(tracks[i], T_map_vehicle, options.reach_keyframes);
   const auto views = view_from_above(input, T_map_vehicle, tracks, options.ground);
   const double level = ground_level(views, options.ground);
   // Without wheels, the ground is a reference only where the cameras' height above it is known.
@@ -196,23 +179,12 @@ BundleStage make_bundle(const MappingInput& input,
              input.session[static_cast<std::size_t>(tracks[i].views.front().keyframe)])] ||
          lacks_wheels(input, views[i].keyframe));
   Quota quota(input, options.per_image);
-  std::vector<std::pair<std::size_t, std::vector<KeyPointId>>> chosen;
-  // Where a place is passed often, one point a corner would leave most passes without points. The
-  // corner becomes a point of its own for each further pass that needs it.
-  const auto order = by_worth(tracks, near, gives_scale);
-  for (bool is_first = true, found = true; found; is_first = false) {
-    found = false;
-    for (const std::size_t i : order) {
-      auto views_taken = take_views(near[i], is_first, quota);
-      if (views_taken.empty()) continue;
-      found |= !near[i].further.empty();
-      chosen.emplace_back(i, std::move(views_taken));
-    }
-  }
-  std::stable_sort(chosen.begin(), chosen.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::size_t> chosen;
+  for (const std::size_t i : by_worth(tracks, near, gives_scale))
+    if (quota.take(near[i])) chosen.push_back(i);
+  std::sort(chosen.begin(), chosen.end());
 
-  for (const auto& [i, taken] : chosen) {
+  for (const std::size_t i : chosen) {
     const JoinedTrack& track = tracks[i];
     const int point = static_cast<int>(stage.problem.points.size());
     BundlePoint p;
@@ -221,7 +193,7 @@ BundleStage make_bundle(const MappingInput& input,
     p.ground_pose = p.ground ? views[i].keyframe : -1;
     stage.problem.points.push_back(p);
     stage.track_of_point.push_back(static_cast<int>(i));
-    for (const auto& view : taken)
+    for (const auto& view : near[i])
       stage.problem.observations.push_back(
           {view.keyframe, point,
            stage.camera_base[static_cast<std::size_t>(

@@ -20,9 +20,6 @@ struct BundleStageOptions {
   /// after the keyframe nearest to it. More would couple all poses with each other and cost time
   /// (docs/results/speed.md).
   int reach_keyframes = 20;
-  /// Of the first passes over a place, a corner takes part with at most this many, and of the
-  /// further passes with one (mapping/pipeline/bundle_views.hpp). The default takes all passes.
-  int base_passes = 1000;
   double feature_sigma_px = 0.6;     ///< of a key point, half-size image
   double wheel_scale_sigma = 0.005;  ///< prior of the factor on the wheels' distance
   double ground_sigma_m = 0.02;
@@ -33,7 +30,7 @@ struct BundleStageOptions {
 /// A bundle problem and the meaning of its indices.
 struct BundleStage {
   BundleProblem problem;
-  std::vector<int> track_of_point;    ///< index in the joined tracks; several points may share one
+  std::vector<int> track_of_point;    ///< index in the joined tracks
   std::vector<int> camera_base;       ///< of each session: index of its first camera
   std::vector<int> scale_of_session;  ///< index of its wheels' factor; -1: no wheels
 };

@@ -16,7 +16,7 @@ std::string options_text(const MapOptions& o) {
        << " low_threshold=" << o.tracking.features.low_threshold
        << " use_wheels=" << o.tracking.use_wheels << " max_gap_s=" << o.tracking.max_gap_s
        << " min_inliers=" << o.loops.min_inliers << " per_image=" << o.bundle.per_image
-       << " reach_keyframes=" << o.bundle.reach_keyframes << " base_passes=" << o.bundle.base_passes
+       << " reach_keyframes=" << o.bundle.reach_keyframes
        << " wheel_scale_sigma=" << o.bundle.wheel_scale_sigma
        << " ground_sigma_m=" << o.bundle.ground_sigma_m << " min_views=" << o.min_views
        << " covariances=" << o.covariances;
