@@ -129,7 +129,9 @@ PieceErrors piece_errors(const Observations& obs,
                          const EffectSizes& found,
                          double over_s) {
   PieceErrors errors;
-  if (obs.poses.size() < 2 || obs.wheels.size() < 2) return errors;
+  // A steered front wheel rolls another way than the car's middle.
+  if (obs.poses.size() < 2 || obs.wheels.size() < 2 || obs.wheels_read == WheelsRead::kFront)
+    return errors;
   const Observations freed = freed_of(obs, motion_effects_of(known), motion_effects_of(found));
   const double half = 0.5 * kAveraged_s;
   // From the middle of the first second to that of the last half second: `over_s`.

@@ -60,8 +60,8 @@ std::string figure(const EvidencePlot& plot) {
          ": measured minus explained [" +
          escaped(plot.unit.empty() ? "standard deviations" : plot.unit) + "] against " +
          escaped(plot.covariate) +
-         ". Orange: as the files state it. Blue: with all corrections. Within the band, 95 % of "
-         "blue points are chance.</figcaption></figure>\n";
+         ". Orange: as the files state it. Blue: with all corrections. By chance, 95 % of the blue "
+         "points lie within the band.</figcaption></figure>\n";
 }
 
 std::string gain_text(const HeldOutGain& gain) {

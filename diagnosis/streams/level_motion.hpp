@@ -32,7 +32,7 @@ void level_motion(const std::vector<Attitude>& attitudes,
                   MotionStreams& streams);
 
 /// Slopes of the road from heights [m] along the way, for references that have no attitude: lines
-/// over 10 m of way, or over as much as tells the slope to 0.01 rad by the scatter of the heights,
+/// over 4 m of way, or over as much as tells the slope to 0.01 rad by the scatter of the heights,
 /// up to 200 m. Bank is 0. Heights and poses are of the same stamps.
 [[nodiscard]] std::vector<Attitude> slopes_of(const std::vector<PoseSample>& poses,
                                               const std::vector<double>& heights_m);

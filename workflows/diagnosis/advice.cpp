@@ -135,7 +135,7 @@ std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehi
   for (const FoundCause& c : d.causes) {
     Advice advice;
     advice.effect = c.effect;
-    const auto words = effect_words(c.effect);
+    const auto words = effect_words(c.effect, stated && stated->of_log);
     const double factor = words ? words->factor : 1.0;
     const std::string_view unit = words ? words->unit : std::string_view(c.unit);
     const int digits = digits_for(0.5 * factor * (c.high - c.low));

@@ -190,21 +190,37 @@ constexpr std::array kWords{
     EffectWords{"STREAM.outliers", "outliers", "some readings of {sensor} are far off", "",
                 "% of the readings", 100.0, "look at the cable and the log of {sensor}"},
     EffectWords{"STREAM.variance(speed)", "noise at speed",
-                "{sensor} is noisier the faster the car drives",
-                "{sensor} is less noisy the faster the car drives", "in log variance a m/s", 1.0,
-                "keep it in the model (`--write-model`)"},
-    EffectWords{"STREAM.variance(turn)", "noise in bends", "{sensor} is noisier in bends",
-                "{sensor} is less noisy in bends", "in log variance a rad/s", 1.0,
+                "readings of {sensor} are noisier the faster the car drives",
+                "readings of {sensor} are less noisy the faster the car drives",
+                "in log variance a m/s", 1.0, "keep it in the model (`--write-model`)"},
+    EffectWords{"STREAM.variance(turn)", "noise in bends",
+                "readings of {sensor} are noisier in bends",
+                "readings of {sensor} are less noisy in bends", "in log variance a rad/s", 1.0,
                 "keep it in the model (`--write-model`)"},
     EffectWords{"STREAM.correlation", "errors that last",
                 "errors of {sensor} last from reading to reading",
                 "errors of {sensor} alternate from reading to reading", "", 1.0,
-                "count its readings for less: they repeat their errors"},
+                "count these readings for less: they repeat their errors"},
+};
+
+// In a plain log, the place of the poses' sensor and its direction stand for a camera's.
+constexpr std::array kWordsOfLogs{
+    EffectWords{"cam.position", "position of the reference's sensor",
+                "the reference's sensor is mounted farther forward than stated",
+                "the reference's sensor is mounted farther back than stated", "cm", 100.0,
+                "add {size} cm to `sensor_forward_m` of the poses"},
+    EffectWords{"cam.rotation", "direction of the reference's sensor",
+                "the reference's heading reads too far to the right",
+                "the reference's heading reads too far to the left", "deg", kToDegrees,
+                "add {size} deg to the heading of the poses"},
 };
 
 }  // namespace
 
-std::optional<EffectWords> effect_words(std::string_view name) {
+std::optional<EffectWords> effect_words(std::string_view name, bool of_log) {
+  if (of_log)
+    for (const EffectWords& words : kWordsOfLogs)
+      if (words.effect == name) return words;
   const auto declared = declared_effect(name);
   if (!declared) return std::nullopt;
   const auto* const found =

@@ -21,7 +21,8 @@ struct EffectWords {
 };
 
 /// The words of an effect ("cam2.pitch", "imu0.outliers"); empty if there is no such effect.
-[[nodiscard]] std::optional<EffectWords> effect_words(std::string_view name);
+/// `of_log`: of a plain log, which has no cameras.
+[[nodiscard]] std::optional<EffectWords> effect_words(std::string_view name, bool of_log = false);
 
 /// What a drive must contain for effects that grow with a covariate, as an order to the driver:
 /// "drive the same street at 5 and at 20 m/s".

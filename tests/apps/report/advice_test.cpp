@@ -50,6 +50,9 @@ TEST(Advice, SaysTheNewValueInTheKeysOfItsFile) {
   EXPECT_EQ(advice_for(cause("wheels0.track_width", -0.1, 0.01), log).action,
             "Set `track_width_m` to 1.3500 m");
   EXPECT_EQ(advice_for(cause("wheels0.radius", 0.02, 0.002), std::nullopt).action, "");
+  const Advice place = advice_for(cause("cam.position", 0.3, 0.01), log);
+  EXPECT_EQ(place.fault, "The reference's sensor is mounted farther forward than stated");
+  EXPECT_EQ(place.action, "Add 30.0 cm to `sensor_forward_m` of the poses");
 }
 
 TEST(Advice, HasWordsForEitherSign) {

@@ -278,8 +278,8 @@ TEST(OccupancyPatches, AtTheBorderOfWhatWasSeenReadingsDoNotCountAsMany) {
     }
   patch.log_odds[index(4, 2)] = 2500;  // a surface
   std::vector<OccupancyPatch> patches{patch};
-  const OccupancyGrid grid = place_patches(
-      patches, [](const std::string&, std::int64_t) { return PlanePose{}.isometry(); }, {});
+  const OccupancyGrid grid =
+      place_patches(patches, [](const std::string&, std::int64_t) { return PlanePose{}; }, {});
   const double prior = log_odds(0.03);
   for (int row = 1; row < 5; ++row)
     for (int column = 1; column < 5; ++column) {
