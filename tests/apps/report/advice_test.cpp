@@ -66,7 +66,7 @@ TEST(Advice, HasWordsForEitherSign) {
   EXPECT_EQ(early.action, "Add 30.0 ms to `time_offset` of the wheels");
   const Advice camera = advice_for(cause("cam2.pitch", -0.0174533, 0.0017), std::nullopt);
   EXPECT_EQ(camera.fault, "Camera cam2 looks farther down than stated");
-  EXPECT_EQ(camera.size.substr(0, 7), "1.00 de");
+  EXPECT_EQ(camera.size.substr(0, 9), "1.000 deg");
 }
 
 // Of the whole catalogue, for both signs: no effect without words, no name left in braces.

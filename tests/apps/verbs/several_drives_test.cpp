@@ -65,7 +65,7 @@ void write_log(const fs::path& folder,
   test::write_text(folder / (name + ".yaml"),
                    "name: " + name + "\nfile: " + name +
                        ".csv\nvehicle: {radius_m: 0.31, track_width_m: 1.6}\n"
-                       "poses: {time: t, x: x, y: y, heading: yaw}\n"
+                       "poses: {time: t, x: x, y: y, heading: yaw, measured_by: tracker}\n"
                        "wheels: {time: t, left: rl, right: rr}\n");
 }
 
@@ -79,7 +79,7 @@ TEST(SeveralDrives, ShortPlainLogsAreDiagnosedTogether) {
   }
   const auto alone = run_command("roadbook diagnose a.yaml", folder.path());
   EXPECT_EQ(alone.status, 2);
-  EXPECT_NE(alone.err.find("want at least 5 s"), std::string::npos) << alone.err;
+  EXPECT_NE(alone.err.find("want at least 5.0 s"), std::string::npos) << alone.err;
   const auto result = run_command(command, folder.path());
   ASSERT_EQ(result.status, 0) << result.err;
   const Json found = Json::parse(result.out);
