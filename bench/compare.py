@@ -96,9 +96,11 @@ def newest_record(file=None):
     if os.path.isdir(HISTORY):
         for name in sorted(os.listdir(HISTORY)):
             if name.endswith(".json"):
-                with open(os.path.join(HISTORY, name), encoding="utf-8") as text:
-                    records.append(json.load(text))
-    return max(records, key=lambda record: record["date"]) if records else None
+                path = os.path.join(HISTORY, name)
+                with open(path, encoding="utf-8") as text:
+                    record = json.load(text)
+                records.append((record["date"], os.path.getmtime(path), name, record))
+    return max(records, key=lambda one: one[:3])[3] if records else None
 
 
 def compare(new, old, comparable, say):
@@ -132,6 +134,8 @@ def main(arguments):
     given = parser.parse_args(arguments)
     if given.repeat < 1:
         parser.error("--repeat: got %d, want 1 or more" % given.repeat)
+    if given.against and not os.path.isfile(given.against):
+        parser.error("--against: %s: got no such file, want a record" % given.against)
     programs = [given.program] + ([given.other] if given.other else [])
     for program in programs:
         if not os.access(program, os.X_OK):

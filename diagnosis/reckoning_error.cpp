@@ -129,8 +129,9 @@ PieceErrors piece_errors(const Observations& obs,
                          const EffectSizes& found,
                          double over_s) {
   PieceErrors errors;
-  // A steered front wheel rolls another way than the car's middle.
-  if (obs.poses.size() < 2 || obs.wheels.size() < 2 || obs.wheels_read == WheelsRead::kFront)
+  // A single wheel rolls another way than the car's middle.
+  if (obs.poses.size() < 2 || obs.wheels.size() < 2 ||
+      (obs.wheels_read != WheelsRead::kBoth && obs.wheels_read != WheelsRead::kMiddle))
     return errors;
   const Observations freed = freed_of(obs, motion_effects_of(known), motion_effects_of(found));
   const double half = 0.5 * kAveraged_s;
@@ -187,15 +188,16 @@ void add_reckoning(const Observations& obs, const EffectSizes& known, Diagnosis&
   if (std::none_of(d.causes.begin(), d.causes.end(),
                    [&](const FoundCause& c) { return moves(c.effect); }))
     return;
-  d.reckoned_before = reckoning_error(obs, known, known);
-  d.reckoned_after = reckoning_error(obs, known, d.extended);
+  // Freed of everything that the model has: what `--model` knows is corrected as well.
+  d.reckoned_before = reckoning_error(obs, {}, known);
+  d.reckoned_after = reckoning_error(obs, {}, d.extended);
   for (FoundCause& cause : d.causes) {
     if (!moves(cause.effect)) continue;
     EffectSizes others = d.extended;
     const auto of_known = known.find(cause.effect);
     others.erase(cause.effect);
     if (of_known != known.end()) others.insert(*of_known);
-    cause.reckoned_without = reckoning_error(obs, known, others);
+    cause.reckoned_without = reckoning_error(obs, {}, others);
   }
 }
 

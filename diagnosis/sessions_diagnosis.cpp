@@ -54,6 +54,7 @@ Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
   std::vector<SessionProblem> problems;
   std::vector<std::string> notes;
   double length_m = 0.0;
+  double duration_s = 0.0;
   // What one drive must show alone, all must show together: runs in a laboratory are short.
   DiagnosisOptions of_one = options;
   of_one.min_length_m = std::min(options.min_length_m, kShortestRun_m);
@@ -63,8 +64,11 @@ Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
     problems.push_back({drive.name, prepared.back().problem.get()});
     for (const std::string& note : prepared.back().notes) notes.push_back(drive.name + ": " + note);
     length_m += prepared.back().length_m;
+    duration_s += drive.streams.poses.back().t_s - drive.streams.poses.front().t_s;
   }
-  check_length(length_m, std::to_string(drives.size()) + " drives together", options);
+  const std::string together = std::to_string(drives.size()) + " drives together";
+  check_length(length_m, together, options);
+  check_duration(duration_s, together, options);
   Diagnosis d = diagnose_together(problems, options.search);
   d.notes.insert(d.notes.begin(), notes.begin(), notes.end());
   d.length_m = length_m;

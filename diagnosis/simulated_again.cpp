@@ -124,7 +124,7 @@ Observations simulated_again(const Observations& obs,
           std::sqrt(std::abs(ds)) *
           noise_growth(noise_imperfections(effects, "wheels0"), s.speed, s.yaw_rate);
       distance += ds + noise.distance_per_sqrt_m * root * of_wheels.normal() +
-                  0.5 * (angle[0] - last[0] + angle[1] - last[1]);
+                  (both ? 0.5 * (angle[0] - last[0] + angle[1] - last[1]) : angle[0] - last[0]);
       if (both)
         heading += row(Channel::kWheelHeading, i - 1) +
                    noise.heading_per_sqrt_m * root * of_wheels.normal() +
@@ -150,11 +150,11 @@ Observations simulated_again(const Observations& obs,
                                    StreamNoise(effects, "poses")};
   const double scale = noise.poses_are_exact() ? 0.0 : 1.0;
   for (std::size_t i = 0; i < obs.poses.size(); ++i) {
-    const MotionState s = along.rates_at(obs.poses[i].t_s);
+    const MotionState s = along.at(obs.poses[i].t_s);
     std::array<double, 3> off{};
     for (std::size_t k = 0; k < 3; ++k)
       off[k] = scale * noise.pose[k] * poses[k].next(of_poses, s.speed, s.yaw_rate);
-    const double at = row(Channel::kPoseHeading, i);
+    const double at = obs.poses_have_heading ? row(Channel::kPoseHeading, i) : s.heading;
     drawn.poses[i].x = row(Channel::kPoseAlong, i) + off[0] * std::cos(at) - off[1] * std::sin(at);
     drawn.poses[i].y = row(Channel::kPoseAcross, i) + off[0] * std::sin(at) + off[1] * std::cos(at);
     drawn.poses[i].heading = at + off[2];

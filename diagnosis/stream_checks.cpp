@@ -103,6 +103,12 @@ void note_gaps(const std::vector<StreamGap>& gaps,
 
 }  // namespace
 
+void check_duration(double duration_s, const std::string& name, const DiagnosisOptions& options) {
+  if (duration_s < options.min_duration_s)
+    refuse(name, "duration", rounded_down(duration_s) + " s",
+           "at least " + rounded(options.min_duration_s) + " s");
+}
+
 void check_streams(const MotionStreams& s,
                    const std::string& name,
                    const DiagnosisOptions& options) {
@@ -131,10 +137,7 @@ void check_streams(const MotionStreams& s,
     refuse(name, "poses", "none", "reference poses (needed for every diagnosis)");
   if (s.wheels.empty() && s.gyro.empty() && s.steering.empty())
     refuse(name, "streams", "poses alone", "a second stream (wheels, steering or gyro)");
-  const double duration = s.poses.back().t_s - s.poses.front().t_s;
-  if (duration < options.min_duration_s)
-    refuse(name, "duration", rounded_down(duration) + " s",
-           "at least " + rounded(options.min_duration_s) + " s");
+  check_duration(s.poses.back().t_s - s.poses.front().t_s, name, options);
 }
 
 void check_length(double length_m, const std::string& name, const DiagnosisOptions& options) {

@@ -16,6 +16,8 @@ void check_streams(const MotionStreams& streams,
 
 /// Throws BadInput if the driven length [m] is below `options.min_length_m`.
 void check_length(double length_m, const std::string& name, const DiagnosisOptions& options);
+/// Throws BadInput if the duration [s] is below `options.min_duration_s`.
+void check_duration(double duration_s, const std::string& name, const DiagnosisOptions& options);
 
 /// Describes streams that are missing or have gaps.
 [[nodiscard]] std::vector<std::string> stream_notes(const MotionStreams& streams,

@@ -144,10 +144,12 @@ std::string summary_section(const Diagnosis& d, const std::vector<Advice>& advic
   for (const UnknownCause& u : d.unknown)
     add(unknown_title(u), "see the curve below", "sure that it depends, not why",
         "Look at the curve: what it depends on shows where to search");
+  if (rows.empty() && !d.unexplained.empty())
+    return section("No fault has a name", "<p>Some readings are unexplained: see below.</p>\n");
   if (rows.empty())
     return section("Nothing is wrong with the sensors",
-                   "<p>The stated calibration explains these " + std::to_string(d.samples) +
-                       " readings.</p>\n");
+                   "<p>The stated calibration of the sensors explains these " +
+                       std::to_string(d.samples) + " readings.</p>\n");
   std::string body =
       "<div class=\"scroll\"><table class=\"stacked\"><thead><tr><th>fault</th><th>size (95 %)</th>"
       "<th>certainty</th><th>to do</th></tr></thead><tbody>" +
@@ -166,15 +168,15 @@ std::string place_section(const std::vector<Advice>& advice) {
   return rows.empty() ? "" : section("Features of the place", "<ul>" + rows + "</ul>\n");
 }
 
-std::string fine_section(const Diagnosis& d) {
-  const std::vector<std::string> nouns = checked_and_fine(d);
+std::string fine_section(const Diagnosis& d, const std::optional<StatedVehicle>& stated) {
+  const std::vector<std::string> nouns = checked_and_fine(d, stated);
   if (nouns.empty()) return "";
   return section("Checked and fine", "<p>" + escaped(capitalised(listed(nouns))) + ".</p>\n");
 }
 
-std::string blind_section(const Diagnosis& d) {
+std::string blind_section(const Diagnosis& d, const std::optional<StatedVehicle>& stated) {
   std::string rows;
-  for (const BlindSpot& spot : blind_spots(d))
+  for (const BlindSpot& spot : blind_spots(d, stated))
     rows += "<li>" + escaped(capitalised(listed(spot.nouns))) + ": <b>" + escaped(spot.drive) +
             "</b>.</li>";
   return rows.empty() ? ""
@@ -281,7 +283,7 @@ std::string diagnosis_page(const Diagnosis& d,
   std::string body = summary_section(d, advice) + place_section(advice);
   for (std::size_t i = 0; i < advice.size(); ++i) body += cause_section(d.causes[i], advice[i]);
   for (const UnknownCause& u : d.unknown) body += unknown_section(u);
-  body += simulation_section(d.simulated) + fine_section(d) + blind_section(d) +
+  body += simulation_section(d.simulated) + fine_section(d, stated) + blind_section(d, stated) +
           list_section("Unexplained", d.unexplained) + list_section("Notes", d.notes) +
           checks_section(d);
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"

@@ -163,8 +163,11 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   d.notes = check_notes(problem.channels(), left, d.after);
   d.looked_for = result.looked_for;
   d.not_observable = result.not_observable;
-  for (const HiddenEffect& h : result.hidden)
+  // Such an effect was looked for in vain: it is neither shown nor absent.
+  for (const HiddenEffect& h : result.hidden) {
     d.notes.push_back(h.name + " is not separable in this drive from " + h.by);
+    std::erase(d.looked_for, h.name);
+  }
   d.samples = problem.rows();
   d.fit_gain = result.model.log_likelihood - nominal.log_likelihood;
   for (const AcceptedEffect& v : result.verdicts) {

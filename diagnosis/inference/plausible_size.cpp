@@ -10,9 +10,9 @@
 namespace roadbook {
 
 std::string likely_mistake(const std::string& effect, double size) {
-  const auto info = declared_effect(effect);
-  if (!info || info->unit != "1") return {};
-  const bool of_radius = effect.find("radius") != std::string::npos;
+  const bool of_radius = effect.ends_with("radius");
+  const bool of_angle = effect == "imu0.gyro_scale" || effect == "steering0.ratio";
+  if (!of_radius && !of_angle) return {};
   // A wheel that is larger than stated turns less: its readings are too small.
   const double factor = of_radius ? 1.0 / (1.0 + size) : 1.0 + size;
   constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -20,16 +20,16 @@ std::string likely_mistake(const std::string& effect, double size) {
     double factor;
     const char* question;
   };
-  std::vector<Mistake> mistakes{{-1.0, "sign reversed?"},
-                                {kDegrees, "degrees taken for radians?"},
-                                {-kDegrees, "degrees taken for radians, and sign reversed?"},
-                                {1.0 / kDegrees, "radians taken for degrees?"},
-                                {3.6, "km/h taken for m/s?"},
-                                {1.0 / 3.6, "m/s taken for km/h?"}};
-  if (of_radius) {
-    mistakes.push_back({2.0, "diameter stated for the radius?"});
-    mistakes.push_back({0.5, "half the radius stated?"});
-  }
+  std::vector<Mistake> mistakes{{-1.0, "sign reversed?"}};
+  if (of_radius)
+    mistakes.insert(mistakes.end(), {{3.6, "km/h taken for m/s?"},
+                                     {1.0 / 3.6, "m/s taken for km/h?"},
+                                     {2.0, "diameter stated for the radius?"},
+                                     {0.5, "half the radius stated?"}});
+  else
+    mistakes.insert(mistakes.end(), {{kDegrees, "degrees taken for radians?"},
+                                     {-kDegrees, "degrees taken for radians, and sign reversed?"},
+                                     {1.0 / kDegrees, "radians taken for degrees?"}});
   for (const Mistake& m : mistakes)
     if (std::abs(factor / m.factor - 1.0) < 0.04) return m.question;
   return {};

@@ -46,7 +46,7 @@ class LogReader {
     auto faults = yaml_.finish_problems();
     for (const Problem& p : problems_.problems()) faults.push_back(p);
     if (!faults.empty()) throw BadInput(faults);
-    if (!attitudes_.empty()) level_motion(attitudes_, {}, log_.streams);
+    if (!attitudes_.empty()) level_motion(attitudes_, attitudes_, {}, log_.streams);
     shift_clock();
     for (auto& note : implausible_values(log_.streams)) log_.notes.push_back(std::move(note));
     columns_of_friction();

@@ -17,11 +17,13 @@ MotionStreams motion_streams(const Drive& drive, const std::vector<TimedPose>& r
   const auto seconds = [origin](std::int64_t t_ns) {
     return 1e-9 * static_cast<double>(t_ns - origin);
   };
-  std::vector<Attitude> attitudes;
+  std::vector<Attitude> body;
+  std::vector<double> heights;
   for (const TimedPose& p : reference) {
     const Eigen::Matrix3d R = p.T_world_vehicle.linear();
-    attitudes.push_back({seconds(p.t_ns), std::atan2(R(2, 0), std::hypot(R(0, 0), R(1, 0))),
-                         std::atan2(R(2, 1), R(2, 2))});
+    heights.push_back(p.T_world_vehicle.translation().z());
+    body.push_back({seconds(p.t_ns), std::atan2(R(2, 0), std::hypot(R(0, 0), R(1, 0))),
+                    std::atan2(R(2, 1), R(2, 2))});
     streams.poses.push_back({seconds(p.t_ns), p.T_world_vehicle.translation().x(),
                              p.T_world_vehicle.translation().y(), std::atan2(R(1, 0), R(0, 0))});
   }
@@ -39,7 +41,10 @@ MotionStreams motion_streams(const Drive& drive, const std::vector<TimedPose>& r
     streams.gyro.push_back({seconds(r.t_ns), r.angular_velocity_rad_s.z()});
     pitch_rates.push_back({seconds(r.t_ns), r.angular_velocity_rad_s.y()});
   });
-  level_motion(attitudes, pitch_rates, streams);
+  // The body may be mounted off level: the slope under the wheels is that of the way.
+  std::vector<Attitude> road = slopes_of(streams.poses, heights);
+  for (std::size_t i = 0; i < road.size(); ++i) road[i].bank_rad = body[i].bank_rad;
+  level_motion(road, body, pitch_rates, streams);
   LoggedColumn temperature{"temperature", "degC", {}, {}};
   drive.for_each_friction_reading([&](const FrictionReading& r) {
     if (!r.temperature_c) return;

@@ -9,6 +9,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kLevel = 0.01;  // [rad]
+constexpr double kNoRoad = 0.6;  // [rad]
 
 // The attitude at a time, and how fast the slope grows.
 struct Standing {
@@ -80,10 +81,19 @@ void level_wheels(const std::vector<Attitude>& attitudes, MotionStreams& streams
   }
 }
 
+bool is_tilted(const std::vector<Attitude>& attitudes) {
+  const auto beyond = [&](double limit) {
+    return std::any_of(attitudes.begin(), attitudes.end(), [&](const Attitude& a) {
+      return std::abs(a.slope_rad) > limit || std::abs(a.bank_rad) > limit;
+    });
+  };
+  return beyond(kLevel) && !beyond(kNoRoad);
+}
+
 // [m] of way over which a line tells the slope: its variance is 12 scatter^2 spacing / length^3.
 double length_of_lines(const std::vector<double>& heights, double spacing_m) {
   constexpr double kWanted = 0.01;   // [rad]
-  constexpr double kShort = 10.0;    // [m]
+  constexpr double kShort = 4.0;     // [m]
   constexpr double kLong = 200.0;    // [m]
   constexpr double kOfThird = 20.0;  // variance of a third difference of white noise
   constexpr double kMedianToSigma = 1.4826;
@@ -99,15 +109,13 @@ double length_of_lines(const std::vector<double>& heights, double spacing_m) {
 
 }  // namespace
 
-void level_motion(const std::vector<Attitude>& attitudes,
+void level_motion(const std::vector<Attitude>& road,
+                  const std::vector<Attitude>& body,
                   const PitchRates& pitch_rates,
                   MotionStreams& streams) {
-  const bool tilted = std::any_of(attitudes.begin(), attitudes.end(), [](const Attitude& a) {
-    return std::abs(a.slope_rad) > kLevel || std::abs(a.bank_rad) > kLevel;
-  });
-  if (!tilted) return;
-  level_wheels(attitudes, streams);
-  AttitudeAt standing(attitudes);
+  if (is_tilted(road)) level_wheels(road, streams);
+  if (!is_tilted(body)) return;
+  AttitudeAt standing(body);
   const bool three_axes = pitch_rates.size() == streams.gyro.size();
   for (std::size_t i = 0; i < streams.gyro.size(); ++i) {
     GyroSample& gyro = streams.gyro[i];
@@ -119,10 +127,19 @@ void level_motion(const std::vector<Attitude>& attitudes,
 
 std::vector<Attitude> slopes_of(const std::vector<PoseSample>& poses,
                                 const std::vector<double>& heights_m) {
-  std::vector<double> way{0.0};
-  for (std::size_t i = 1; i < poses.size(); ++i)
-    way.push_back(way.back() +
-                  std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y));
+  // From anchor to anchor, so that the scatter of standing or slow poses does not add up.
+  constexpr double kAnchor_m = 1.0;
+  std::vector<double> way;
+  double base = 0.0;
+  std::size_t anchor = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const double d = std::hypot(poses[i].x - poses[anchor].x, poses[i].y - poses[anchor].y);
+    way.push_back(base + d);
+    if (d < kAnchor_m) continue;
+    base += d;
+    anchor = i;
+  }
+  if (poses.empty()) return {};
   const double over_m = length_of_lines(
       heights_m, way.back() / static_cast<double>(std::max<std::size_t>(poses.size(), 2)));
   std::vector<Attitude> slopes;
@@ -131,7 +148,9 @@ std::vector<Attitude> slopes_of(const std::vector<PoseSample>& poses,
     while (way[i] - way[begin] > 0.5 * over_m) ++begin;
     while (end < poses.size() && way[end] - way[i] <= 0.5 * over_m) ++end;
     double n = 0.0, s = 0.0, ss = 0.0, z = 0.0, sz = 0.0;
-    for (std::size_t k = begin; k < end; ++k) {
+    // A car that stands for long has many poses in one place: some of them do.
+    const std::size_t stride = 1 + (end - begin) / 500;
+    for (std::size_t k = begin; k < end; k += stride) {
       const double d = way[k] - way[i];
       n += 1.0;
       s += d;

@@ -23,11 +23,14 @@ using PitchRates = std::vector<GyroSample>;
 ///   heading rate = (cos(bank) w_z + sin(bank) w_y) / cos(slope)
 ///                = (w_z - sin(bank) d slope / dt) / (cos(slope) cos(bank))
 /// (Euler angles yaw, pitch, roll; pitch = -slope). The second form is for wheels, and for a gyro
-/// with one axis, where `pitch_rates` are empty. `attitudes` ascend in time; before and after them
-/// the first and the last hold. Nothing is changed where no attitude is
-/// off level by more than 0.01 rad. Steering angles stay: they are about the car's own axis, and
-/// slip-free rolling on a plane road has the curvature of that plane.
-void level_motion(const std::vector<Attitude>& attitudes,
+/// with one axis, where `pitch_rates` are empty. `road`: how the road lies under the wheels;
+/// `body`: how the gyro stands, which may be mounted off level. Both ascend in time; before and
+/// after them the first and the last hold. A stream stays as it is if no attitude of the whole
+/// drive is off level by more than 0.01 rad, or if one is by more than 0.6 rad, which no road is.
+/// Steering angles stay: they are about the car's own axis, and slip-free rolling on a plane road
+/// has the curvature of that plane.
+void level_motion(const std::vector<Attitude>& road,
+                  const std::vector<Attitude>& body,
                   const PitchRates& pitch_rates,
                   MotionStreams& streams);
 

@@ -209,7 +209,9 @@ std::vector<LoopClosure> verify_loops(const MappingInput& input,
         segments[earlier] == segments[later] && has_wheels && std::abs(heading_of(T)) < kSameWayRad;
     loops[i] = verify(input.rig_of(pairs[i].later), input.odometry, pairs[i].earlier,
                       pairs[i].later, !same_way, options);
-    if (has_wheels || !loops[i].edge.accepted) return;
+    const bool metric =
+        has_wheels && input.has_wheels[static_cast<std::size_t>(input.session[earlier])];
+    if (metric || !loops[i].edge.accepted) return;
     const auto scale = scale_of_loop(input.rig_of(pairs[i].later), input.odometry, loops[i].edge,
                                      loops[i].matches);
     if (!scale) return;

@@ -68,7 +68,13 @@ bool PresenceMap::solve_by_gradients() {
   Eigen::VectorXd product(n);
   double squared = rest.squaredNorm();
   for (int step = 0; step < kMostSteps; ++step) {
-    if (rest.lpNorm<Eigen::Infinity>() <= goal) return true;
+    if (rest.lpNorm<Eigen::Infinity>() <= goal) {
+      // The residual was updated step by step: what it really is decides.
+      for (Eigen::Index i = 0; i < n; ++i) rest[i] = residual(static_cast<int>(i)) / root[i];
+      if (rest.lpNorm<Eigen::Infinity>() <= 2.0 * goal) return true;
+      direction = rest;
+      squared = rest.squaredNorm();
+    }
     double along = 0.0;
     for (std::size_t i = 0; i < size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);

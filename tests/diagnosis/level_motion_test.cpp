@@ -33,7 +33,7 @@ TEST(LevelMotion, GivesTheReadingsOfThePlane) {
     const MotionStreams plane = test::PlanarCar(1).record({});
     HillDrive drive = drive_over(hills, 1);
     EXPECT_GT(drive.streams.wheels.back().left_rad, 1.002 * plane.wheels.back().left_rad);
-    level_motion(drive.attitudes, drive.pitch_rates, drive.streams);
+    level_motion(drive.attitudes, drive.attitudes, drive.pitch_rates, drive.streams);
     double worst_rate = 0.0;
     for (std::size_t i = 5; i + 5 < plane.gyro.size(); ++i)
       worst_rate = std::max(worst_rate,
@@ -69,7 +69,7 @@ TEST(LevelMotion, HillsRaiseNoAlarmAndHideNoRadius) {
   for (std::uint64_t seed = 30; seed < 34; ++seed) {
     HillDrive drive = drive_over({}, seed);
     alarms_before += names_of(diagnose(drive.streams, "drive")).empty() ? 0 : 1;
-    level_motion(drive.attitudes, drive.pitch_rates, drive.streams);
+    level_motion(drive.attitudes, drive.attitudes, drive.pitch_rates, drive.streams);
     EXPECT_EQ(names_of(diagnose(drive.streams, "drive")), "") << seed;
   }
   EXPECT_GE(alarms_before, 2);
@@ -80,19 +80,23 @@ TEST(LevelMotion, HillsRaiseNoAlarmAndHideNoRadius) {
   };
   HillDrive drive = drive_over({}, 35, 0.03);
   MotionStreams by_heights = drive.streams;
-  level_motion(drive.attitudes, drive.pitch_rates, drive.streams);
+  level_motion(drive.attitudes, drive.attitudes, drive.pitch_rates, drive.streams);
   const FoundCause exact = radius_of(drive.streams);
   EXPECT_LT(exact.low, 0.03);
   EXPECT_GT(exact.high, 0.03);
   // Lines over heights flatten the tops of hills a little.
-  level_motion(slopes_of(by_heights.poses, drive.heights), {}, by_heights);
+  const auto slopes = slopes_of(by_heights.poses, drive.heights);
+  level_motion(slopes, slopes, {}, by_heights);
   EXPECT_NEAR(radius_of(by_heights).size, 0.03, 0.001);
 }
 
 TEST(LevelMotion, OnThePlaneChangesNothing) {
   const MotionStreams plane = test::PlanarCar(3).record({});
   MotionStreams same = plane;
-  level_motion({{0.0, 0.004, -0.003}, {100.0, -0.004, 0.003}}, {}, same);
+  const std::vector<Attitude> level{{0.0, 0.004, -0.003}, {100.0, -0.004, 0.003}};
+  level_motion(level, level, {}, same);
+  const std::vector<Attitude> no_road{{0.0, 1.2, 0.0}, {100.0, 1.2, 0.0}};
+  level_motion(no_road, no_road, {}, same);
   for (std::size_t i = 0; i < plane.wheels.size(); ++i)
     ASSERT_EQ(same.wheels[i].left_rad, plane.wheels[i].left_rad);
   for (std::size_t i = 0; i < plane.gyro.size(); ++i)

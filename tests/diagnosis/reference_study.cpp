@@ -85,7 +85,8 @@ void study_hills(std::size_t drives, std::uint64_t seed, int threads) {
           std::to_string(share) + (levelled ? ", levelled" : ", as it is read");
       study(kind.c_str(), drives, seed, threads, [&](std::uint64_t one, double radius) {
         HillDrive drive = drive_over(hills, one, radius);
-        if (levelled) level_motion(drive.attitudes, drive.pitch_rates, drive.streams);
+        if (levelled)
+          level_motion(drive.attitudes, drive.attitudes, drive.pitch_rates, drive.streams);
         return drive.streams;
       });
     }

@@ -45,7 +45,7 @@ std::string with_unit(const std::string& number, std::string_view unit) {
   return unit.empty() ? number : number + " " + std::string(unit);
 }
 
-// The vehicle with the cause corrected.
+// The vehicle with one cause corrected.
 WheelModel corrected(WheelModel vehicle, const std::string& effect, double size) {
   if (effect == "wheels0.left_radius" || effect == "wheels0.radius")
     vehicle.radius_left_m *= 1.0 + size;
@@ -57,7 +57,6 @@ WheelModel corrected(WheelModel vehicle, const std::string& effect, double size)
   }
   if (effect == "wheels0.track_width") vehicle.track_width_m *= 1.0 + size;
   if (effect == "steering0.wheelbase") vehicle.wheelbase_m *= 1.0 + size;
-  if (effect == "steering0.ratio") vehicle.steering_ratio *= 1.0 + size;
   return vehicle;
 }
 
@@ -84,7 +83,6 @@ void add_vehicle(const WheelModel& vehicle, std::map<std::string, std::string>& 
   values["right"] = fixed(vehicle.radius_right_m, 4);
   values["track"] = fixed(vehicle.track_width_m, 4);
   values["wheelbase"] = fixed(vehicle.wheelbase_m, 4);
-  values["ratio"] = fixed(vehicle.steering_ratio, 4);
 }
 
 void add_keys(bool of_log, std::map<std::string, std::string>& values) {
@@ -103,8 +101,16 @@ std::string error_text(const ReckoningError& error) {
   return fixed(cm, cm < 10.0 ? 1 : 0) + " cm and " + fixed(deg, deg < 1.0 ? 2 : 1) + " deg";
 }
 
-std::string noun_of(const std::string& effect) {
-  const auto words = effect_words(effect);
+// With all causes that hold everywhere and in all drives: a new value is right together with the
+// others.
+WheelModel corrected_by(const Diagnosis& d, WheelModel vehicle) {
+  for (const FoundCause& c : d.causes)
+    if (c.session.empty() && !c.in_place) vehicle = corrected(vehicle, c.effect, c.size);
+  return vehicle;
+}
+
+std::string noun_of(const std::string& effect, bool of_log) {
+  const auto words = effect_words(effect, of_log);
   if (!words) return effect;
   const std::string sensor = sensor_of(effect);
   const bool one_camera = sensor.starts_with("cam") && sensor != "cam";
@@ -120,10 +126,10 @@ std::string listed(const std::vector<std::string>& names, const char* last = " a
   return text;
 }
 
-std::string certainty_of(const FoundCause& c) {
+std::string certainty_of(const FoundCause& c, bool of_log) {
   if (c.inseparable.empty()) return c.evidence >= kSureNats && c.gain.low > 0.0 ? "sure" : "likely";
   std::vector<std::string> nouns;
-  for (const std::string& other : c.inseparable) nouns.push_back(noun_of(other));
+  for (const std::string& other : c.inseparable) nouns.push_back(noun_of(other, of_log));
   return "sure that something is wrong; in this drive, an error of " + listed(nouns, " or ") +
          " looks the same";
 }
@@ -132,10 +138,11 @@ std::string certainty_of(const FoundCause& c) {
 
 std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehicle>& stated) {
   std::vector<Advice> all;
+  const bool of_log = stated && stated->of_log;
   for (const FoundCause& c : d.causes) {
     Advice advice;
     advice.effect = c.effect;
-    const auto words = effect_words(c.effect, stated && stated->of_log);
+    const auto words = effect_words(c.effect, of_log);
     const double factor = words ? words->factor : 1.0;
     const std::string_view unit = words ? words->unit : std::string_view(c.unit);
     const int digits = digits_for(0.5 * factor * (c.high - c.low));
@@ -144,9 +151,13 @@ std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehi
     const auto shown = [&](double size) { return fixed(sign * factor * size, digits); };
     std::map<std::string, std::string> values{{"sensor", sensor_words(sensor_of(c.effect))},
                                               {"size", fixed(factor * c.size, digits)},
+                                              {"factor", fixed(1.0 + c.size, digits + 2)},
                                               {"-size", fixed(-factor * c.size, digits)}};
-    add_keys(stated && stated->of_log, values);
-    if (stated) add_vehicle(corrected(stated->wheels, c.effect, c.size), values);
+    add_keys(of_log, values);
+    if (stated)
+      add_vehicle(c.session.empty() ? corrected_by(d, stated->wheels)
+                                    : corrected(stated->wheels, c.effect, c.size),
+                  values);
     advice.fault = c.effect;
     if (words) {
       const std::string_view fault = sign < 0.0 ? words->less : words->more;
@@ -157,7 +168,7 @@ std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehi
     if (!c.session.empty()) advice.fault += " (in " + c.session + ")";
     advice.size = with_unit(shown(c.size), unit) + " (" + shown(sign < 0.0 ? c.high : c.low) +
                   " to " + with_unit(shown(sign < 0.0 ? c.low : c.high), unit) + ")";
-    advice.certainty = certainty_of(c);
+    advice.certainty = certainty_of(c, of_log);
     if (!c.inseparable.empty() && !c.separating.empty()) {
       if (!advice.action.empty()) advice.action += ", if it is this one; ";
       advice.action += advice.action.empty() ? capital(c.separating) : c.separating;
@@ -180,20 +191,21 @@ std::string reckoning_text(const Diagnosis& d) {
          error_text(*d.reckoned_after);
 }
 
-std::vector<std::string> checked_and_fine(const Diagnosis& d) {
+std::vector<std::string> checked_and_fine(const Diagnosis& d,
+                                          const std::optional<StatedVehicle>& stated) {
   std::vector<std::string> nouns;
   for (const std::string& effect : d.looked_for) {
     const auto is_named = [&](const FoundCause& c) {
       return c.effect == effect || std::count(c.inseparable.begin(), c.inseparable.end(), effect);
     };
     if (!shows(d, effect) || std::any_of(d.causes.begin(), d.causes.end(), is_named)) continue;
-    const std::string noun = noun_of(effect);
+    const std::string noun = noun_of(effect, stated && stated->of_log);
     if (std::find(nouns.begin(), nouns.end(), noun) == nouns.end()) nouns.push_back(noun);
   }
   return nouns;
 }
 
-std::vector<BlindSpot> blind_spots(const Diagnosis& d) {
+std::vector<BlindSpot> blind_spots(const Diagnosis& d, const std::optional<StatedVehicle>& stated) {
   std::vector<BlindSpot> spots;
   for (const std::string& effect : d.not_observable) {
     const auto declared = declared_effect(effect);
@@ -201,7 +213,7 @@ std::vector<BlindSpot> blind_spots(const Diagnosis& d) {
     auto spot = std::find_if(spots.begin(), spots.end(),
                              [&](const BlindSpot& s) { return s.drive == drive; });
     if (spot == spots.end()) spot = spots.insert(spots.end(), {drive, {}});
-    spot->nouns.push_back(noun_of(effect));
+    spot->nouns.push_back(noun_of(effect, stated && stated->of_log));
   }
   return spots;
 }

@@ -29,7 +29,7 @@ struct Advice {
 };
 
 /// Of each cause of `d`, in its order. New values of the vehicle are only said where `stated` is
-/// given.
+/// given; they hold with all faults corrected together.
 [[nodiscard]] std::vector<Advice> advice_of(const Diagnosis& d,
                                             const std::optional<StatedVehicle>& stated);
 
@@ -38,14 +38,16 @@ struct Advice {
 [[nodiscard]] std::string reckoning_text(const Diagnosis& d);
 
 /// Nouns of the effects that were looked for, that this drive shows, and that it does not have.
-[[nodiscard]] std::vector<std::string> checked_and_fine(const Diagnosis& d);
+[[nodiscard]] std::vector<std::string> checked_and_fine(
+    const Diagnosis& d, const std::optional<StatedVehicle>& stated = {});
 
 /// Effects that this drive does not show, by the drive that would show them.
 struct BlindSpot {
   std::string drive;               ///< "drive the same street at 5 and at 20 m/s"
   std::vector<std::string> nouns;  ///< "growth of the tyres with speed"
 };
-[[nodiscard]] std::vector<BlindSpot> blind_spots(const Diagnosis& d);
+[[nodiscard]] std::vector<BlindSpot> blind_spots(const Diagnosis& d,
+                                                 const std::optional<StatedVehicle>& stated = {});
 
 /// The advice as lines of text: two or three for each cause, and one for the gain.
 [[nodiscard]] std::vector<std::string> advice_lines(const Diagnosis& d,

@@ -120,7 +120,7 @@ ordered_json advice_json(const Diagnosis& d, const std::optional<StatedVehicle>&
   ordered_json object = {{"faults", ordered_json::array()},
                          {"reckoning_before", error(d.reckoned_before)},
                          {"reckoning_after", error(d.reckoned_after)},
-                         {"fine", checked_and_fine(d)}};
+                         {"fine", checked_and_fine(d, stated)}};
   const std::vector<Advice> all = advice_of(d, stated);
   for (std::size_t i = 0; i < all.size(); ++i)
     object["faults"].push_back({{"effect", all[i].effect},

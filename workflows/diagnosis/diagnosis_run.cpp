@@ -69,7 +69,7 @@ DiagnosisRun of_log(const DiagnosisRequest& request, DiagnosisOptions options) {
   DiagnosisRun run{diagnose_streams(log.streams, log.readings, request.drive.string(), options),
                    log.name, log.digest};
   run.diagnosis.notes.insert(run.diagnosis.notes.begin(), log.notes.begin(), log.notes.end());
-  if (!log.streams.wheels.empty()) run.stated = StatedVehicle{log.streams.wheel_model, true};
+  run.stated = StatedVehicle{log.streams.wheel_model, true};
   return run;
 }
 

@@ -58,10 +58,10 @@ constexpr std::array kWords{
     EffectWords{"steering0.offset", "zero of the steering angle",
                 "the steering angle reads too far to the left",
                 "the steering angle reads too far to the right", "deg", kToDegrees,
-                "add {-size} deg to the steering angle"},
+                "add {-size} deg to the angle of the road wheels"},
     EffectWords{"steering0.ratio", "steering ratio", "the steering angle reads too large",
                 "the steering angle reads too small", "%", 100.0,
-                "set `steering_ratio` to {ratio}"},
+                "divide the steering angle by {factor}"},
     EffectWords{"steering0.understeer", "understeer",
                 "the car turns less than its steering angle says the faster it drives",
                 "the car turns more than its steering angle says the faster it drives",
@@ -205,6 +205,10 @@ constexpr std::array kWords{
 
 // In a plain log, the place of the poses' sensor and its direction stand for a camera's.
 constexpr std::array kWordsOfLogs{
+    EffectWords{"cam.latency", "time stamps of the reference",
+                "the reference poses are stamped too late",
+                "the reference poses are stamped too early", "ms", 1000.0,
+                "add {-size} ms to the stamps of the poses"},
     EffectWords{"cam.position", "position of the reference's sensor",
                 "the reference's sensor is mounted farther forward than stated",
                 "the reference's sensor is mounted farther back than stated", "cm", 100.0,

@@ -112,6 +112,11 @@ DiagnosisRun diagnose_several(const DiagnosisRequest& request,
   DiagnosisOptions options = given;
   DiagnosisRun run;
   Sha256 digest;
+  const auto is_log = [](const std::filesystem::path& p) {
+    return std::filesystem::is_regular_file(p);
+  };
+  if (std::all_of(places.begin(), places.end(), is_log))
+    run.stated = StatedVehicle{drives.front().streams.wheel_model, true};
   for (const NamedDrive& one : drives) {
     digest.update(one.digest);
     run.name += (run.name.empty() ? "" : ", ") + one.name;
@@ -120,6 +125,10 @@ DiagnosisRun diagnose_several(const DiagnosisRequest& request,
   }
   run.digest = digest.hex();
   run.diagnosis = shared_motion(drives, options);
+  for (const NamedDrive& one : drives)
+    for (const std::string& effect : one.without)
+      run.diagnosis.notes.push_back(effect + " is left out for all drives, because " + one.name +
+                                    " cannot have it");
   std::vector<SessionReadings> read;
   for (const NamedDrive& one : drives) read.push_back({one.name, &one.readings});
   add_findings(diagnose_readings(read, options.search, options.library, options.known),

@@ -55,6 +55,21 @@ TEST(Advice, SaysTheNewValueInTheKeysOfItsFile) {
   EXPECT_EQ(place.action, "Add 30.0 cm to `sensor_forward_m` of the poses");
 }
 
+// Both rows say the values that are right when both faults are corrected.
+TEST(Advice, NewValuesHoldTogether) {
+  Diagnosis d;
+  d.causes.push_back(cause("wheels0.radius", 0.02, 0.002));
+  d.causes.push_back(cause("wheels0.radius_difference", 0.01, 0.002));
+  StatedVehicle vehicle = stated_vehicle();
+  vehicle.wheels.radius_left_m = vehicle.wheels.radius_right_m = 0.30;
+  for (const Advice& advice : advice_of(d, vehicle)) {
+    EXPECT_NE(advice.action.find("0.3045 m"), std::string::npos) << advice.action;
+    EXPECT_NE(advice.action.find("0.3075 m"), std::string::npos) << advice.action;
+  }
+  EXPECT_EQ(advice_for(cause("steering0.ratio", 0.05, 0.001), vehicle).action,
+            "Divide the steering angle by 1.0500");
+}
+
 TEST(Advice, HasWordsForEitherSign) {
   const Advice late = advice_for(cause("wheels0.latency", 0.03, 0.001), stated_vehicle());
   EXPECT_EQ(late.fault, "The wheels are stamped too late");
