@@ -30,12 +30,8 @@ bool reckon(const Observations& obs, const Trajectory& trajectory, Way& way) {
   Point here = 0.0;
   double heading = 0.0;
   for (std::size_t j = 0; j < trajectory.knots(); ++j) {
-    auto v = reckoned_speed(obs, trajectory.knot_s(j));
+    const auto v = reckoned_speed(obs, trajectory.knot_s(j));
     const auto w = reckoned_yaw_rate(obs, trajectory.knot_s(j));
-    // In a bend to the left, the left wheel is slower than the middle of the axle.
-    const double half_track = 0.5 * obs.wheel_model.track_width_m;
-    if (v && w && obs.wheels_read == WheelsRead::kLeft) v = *v + half_track * *w;
-    if (v && w && obs.wheels_read == WheelsRead::kRight) v = *v - half_track * *w;
     if (v && w) ++reckoned;
     speed = v.value_or(speed);
     yaw_rate = w.value_or(yaw_rate);
@@ -93,8 +89,10 @@ Laid lay(const std::vector<Point>& reckoned,
 bool lay_way_on_positions(const Observations& obs, double scatter_m, Trajectory& trajectory) {
   const auto& poses = obs.poses;
   Way way;
-  if (poses.size() < 3 || obs.wheels_read == WheelsRead::kFront || !reckon(obs, trajectory, way))
-    return false;
+  // A single wheel rolls another way than the car's middle.
+  const bool of_middle =
+      obs.wheels_read == WheelsRead::kBoth || obs.wheels_read == WheelsRead::kMiddle;
+  if (poses.size() < 3 || !of_middle || !reckon(obs, trajectory, way)) return false;
   std::vector<Point> reckoned;
   for (const PoseSample& pose : poses) reckoned.push_back(way_at(way, trajectory, pose.t_s));
   const double wanted = std::pow(scatter_m / kTurnWanted, 2);
