@@ -152,23 +152,6 @@ CellShape shape_over(const std::vector<OccupancyPatch>& patches,
   return CellShape::over(low, high, patches[used.front()].cell_m);
 }
 
-// What hides the ground behind it may stand in a cell that readings passed at the border of what
-// they reached: up to five readings there, cells are occupied thirty times as often as others with
-// the same number of readings (simulated car park). The number of readings then says nothing.
-void discount_border(OccupancyGrid& grid) {
-  const CellShape& shape = grid.shape;
-  const auto unknown = [&](int column, int row) {
-    return !shape.holds(column, row) || grid.seen[shape.index(column, row)] == 0;
-  };
-  for (int r = 0; r < shape.rows; ++r)
-    for (int c = 0; c < shape.columns; ++c) {
-      const std::size_t i = shape.index(c, r);
-      if (grid.change[i] < 0.0F &&
-          (unknown(c - 1, r) || unknown(c + 1, r) || unknown(c, r - 1) || unknown(c, r + 1)))
-        grid.effective[i] = 0.0F;
-    }
-}
-
 }  // namespace
 
 double OccupancyGrid::probability(std::size_t cell, double prior_log_odds) const {
@@ -233,7 +216,6 @@ OccupancyGrid place_patches(std::vector<OccupancyPatch>& patches,
     const auto found = temper.find(drive);
     sum.add_to(found == temper.end() ? 1.0 : found->second, grid);
   }
-  discount_border(grid);
   // Numbers in the order of time become those of the patches.
   for (std::int32_t& newest : grid.newest)
     if (newest >= 0) newest = static_cast<std::int32_t>(used[static_cast<std::size_t>(newest)]);

@@ -14,12 +14,10 @@ namespace roadbook {
 /// The occupancy grid of a map: all patches at the present poses of the map.
 struct OccupancyGrid {
   CellShape shape;
-  std::vector<float> change;        ///< of the log odds since before any reading, tempered
-  std::vector<std::uint32_t> seen;  ///< readings that changed the cell; 0: unknown
-  std::vector<std::uint32_t> hits;  ///< readings that ended in it
-  /// Number of independent readings; 0 in a cell that readings only passed and that shares a side
-  /// with a cell that no reading reached.
-  std::vector<float> effective;
+  std::vector<float> change;         ///< of the log odds since before any reading, tempered
+  std::vector<std::uint32_t> seen;   ///< readings that changed the cell; 0: unknown
+  std::vector<std::uint32_t> hits;   ///< readings that ended in it
+  std::vector<float> effective;      ///< number of independent readings
   std::vector<std::uint8_t> drives;  ///< drives that saw the cell
   std::vector<std::int32_t> newest;  ///< number of the patch seen last, by time; -1: none
   std::size_t moved = 0;             ///< patches placed again
@@ -36,8 +34,8 @@ struct OccupancyGrid {
 inline constexpr double kFreeProbability = 0.196;
 inline constexpr double kOccupiedProbability = 0.65;
 
-/// A cell is free if its probability plus two standard deviations is below the threshold: a reading
-/// that passed a cell at the border of what was reached is too little.
+/// A cell is free if its probability plus two standard deviations is below the threshold: one
+/// reading that passed a cell is too little.
 [[nodiscard]] inline bool is_free(double probability, double sigma) {
   return probability + 2.0 * sigma < kFreeProbability;
 }
