@@ -11,7 +11,7 @@ namespace roadbook {
 /// Reckons each piece of `obs` from readings that are freed of `found` beyond `known`: predicted
 /// readings and poses with `found`, less those with `known`, both along the reference, are taken
 /// off. The reference is averaged over a second at both ends of a piece. Pieces in which the car
-/// stands, or with a gap of wheels, are left out. Empty without wheels, where only one wheel is
+/// is at rest, or with a gap of wheels, are left out. Empty without wheels, where only one wheel is
 /// read, or with fewer than three pieces.
 [[nodiscard]] std::optional<ReckoningError> reckoning_error(const Observations& obs,
                                                             const EffectSizes& known,

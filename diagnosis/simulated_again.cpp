@@ -2,13 +2,13 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "base/random.hpp"
 #include "diagnosis/motion/motion_fit.hpp"
 #include "diagnosis/reckoning_error.hpp"
 #include "diagnosis/streams/motion_prediction.hpp"
+#include "diagnosis/streams/shown_unit.hpp"
 #include "sensors/stream_noise.hpp"
 
 namespace roadbook {
@@ -24,31 +24,16 @@ std::vector<double> innovations_of(const Observations& obs, const EffectSizes& k
   return row_residuals(obs, reference_of(obs), motion_effects_of(known));
 }
 
-struct ShownChannel {
-  Channel channel;
-  const char* unit;
-  double factor;
-};
-
-std::vector<ShownChannel> shown_channels(const Observations& obs) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
-  return {{Channel::kWheelDistance, "cm/s", 100.0 / obs.step_s},
-          {Channel::kWheelHeading, "deg/s", kDegrees / obs.step_s},
-          {Channel::kSteering, "deg", kDegrees},
-          {Channel::kGyro, "deg/s", kDegrees},
-          {Channel::kPoseAlong, "cm", 100.0},
-          {Channel::kPoseAcross, "cm", 100.0},
-          {Channel::kPoseHeading, "deg", kDegrees}};
-}
-
+// Of one channel, in the unit of reports.
 std::vector<double> rows_of(const Observations& obs,
                             const std::vector<double>& all,
-                            const ShownChannel& shown) {
+                            Channel channel) {
   const auto first = obs.offsets();
-  const std::size_t c = index_of(shown.channel);
+  const std::size_t c = index_of(channel);
   std::vector<double> rows(all.begin() + static_cast<std::ptrdiff_t>(first[c]),
                            all.begin() + static_cast<std::ptrdiff_t>(first[c + 1]));
-  for (double& row : rows) row *= shown.factor;
+  const double factor = shown_unit(obs, channel).factor;
+  for (double& row : rows) row *= factor;
   return rows;
 }
 
@@ -66,10 +51,10 @@ struct Simulated {
       innovations.push_back(innovations_of(drives.back(), known));
     }
   }
-  [[nodiscard]] std::vector<double> rows(const ShownChannel& shown) const {
+  [[nodiscard]] std::vector<double> rows(Channel channel) const {
     std::vector<double> all;
     for (std::size_t i = 0; i < drives.size(); ++i)
-      for (const double row : rows_of(drives[i], innovations[i], shown)) all.push_back(row);
+      for (const double row : rows_of(drives[i], innovations[i], channel)) all.push_back(row);
     return all;
   }
   [[nodiscard]] std::vector<double> reckoned(const EffectSizes& known) const {
@@ -80,14 +65,6 @@ struct Simulated {
     return all;
   }
 };
-
-void add_moments(const std::vector<double>& values, StreamComparison& to) {
-  to.rows = values.size();
-  for (const double v : values) to.mean += v / static_cast<double>(values.size());
-  double squares = 0.0;
-  for (const double v : values) squares += (v - to.mean) * (v - to.mean);
-  to.sigma = std::sqrt(squares / static_cast<double>(values.size()));
-}
 
 }  // namespace
 
@@ -171,16 +148,18 @@ std::vector<StreamComparison> compare_with_simulation(const Observations& obs,
   std::optional<Simulated> extended;
   if (found != known) extended.emplace(obs, known, found, noise);
   std::vector<StreamComparison> all;
-  for (const ShownChannel& shown : shown_channels(obs)) {
-    const std::vector<double> rows = rows_of(obs, recorded, shown);
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    const auto channel = static_cast<Channel>(i);
+    const std::vector<double> rows = rows_of(obs, recorded, channel);
     if (rows.size() < kFewestRows) continue;
     StreamComparison c;
-    c.stream = std::string(stream_of(shown.channel));
-    c.channel = std::string(name_of(shown.channel));
-    c.unit = shown.unit;
-    add_moments(rows, c);
-    c.stated = compare_samples(rows, stated.rows(shown));
-    if (extended) c.extended = compare_samples(rows, extended->rows(shown));
+    c.stream = std::string(stream_of(channel));
+    c.channel = std::string(name_of(channel));
+    c.unit = shown_unit(obs, channel).name;
+    c.rows = rows.size();
+    c.recorded = moments_of(rows);
+    c.stated = compare_samples(rows, stated.rows(channel));
+    if (extended) c.extended = compare_samples(rows, extended->rows(channel));
     all.push_back(std::move(c));
   }
   std::vector<double> reckoned = reckoning_errors_m(obs, known, known);
@@ -193,7 +172,8 @@ std::vector<StreamComparison> compare_with_simulation(const Observations& obs,
   c.stream = "dead reckoning";
   c.channel = "error after 5 s";
   c.unit = "cm";
-  add_moments(reckoned, c);
+  c.rows = reckoned.size();
+  c.recorded = moments_of(reckoned);
   c.stated = compare_samples(reckoned, as_stated);
   if (with_effects.size() >= 3) c.extended = compare_samples(reckoned, with_effects);
   all.push_back(std::move(c));

@@ -12,8 +12,9 @@ namespace roadbook {
 // What the simulation gets wrong: a recorded drive is simulated again along its own reference, once
 // as its files state the car and once with the effects found, and the distributions are compared.
 
-/// The readings and poses of `obs`, drawn anew: a car with `effects` drives the reference
-/// trajectory of `obs`. `noise`: standard deviations of the white parts. Deterministic in `seed`.
+/// Draws new readings and poses in place of those of `obs`: a car with `effects` drives the
+/// reference trajectory of `obs`. `noise`: standard deviations of the white parts. Deterministic in
+/// `seed`.
 [[nodiscard]] Observations simulated_again(const Observations& obs,
                                            const EffectSizes& effects,
                                            const MotionNoise& noise,

@@ -1,7 +1,6 @@
 #include "apps/report/diagnosis_page.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 
@@ -24,12 +23,6 @@ std::string short_number(double value) {
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-std::string capitalised(std::string text) {
-  if (!text.empty())
-    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   return text;
 }
 
@@ -90,7 +83,7 @@ std::string cause_section(const FoundCause& c, const Advice& advice) {
   std::string body =
       "<p><b>" + escaped(advice.size) + "</b>, " + escaped(advice.certainty) + ".</p>\n";
   if (!advice.action.empty()) body += "<p>" + with_code(advice.action) + ".</p>\n";
-  if (!advice.gain.empty()) body += "<p>" + escaped(capitalised(advice.gain)) + ".</p>\n";
+  if (!advice.gain.empty()) body += "<p>" + escaped(advice.gain) + ".</p>\n";
   if (const std::string doubt = size_doubt(c); !doubt.empty())
     body += "<p><b>" + escaped(doubt) + "</b></p>\n";
   body += places_table(c.places) + figure(c.plot);
@@ -143,7 +136,7 @@ std::string summary_section(const Diagnosis& d, const std::vector<Advice>& advic
     if (!a.of_place) add(a.fault, a.size, a.certainty, a.action);
   for (const UnknownCause& u : d.unknown)
     add(unknown_title(u), "see the curve below", "sure that it depends, not why",
-        "Look at the curve: what it depends on shows where to search");
+        "Look at the curve: its x axis shows where to search");
   if (rows.empty() && !d.unexplained.empty())
     return section("No fault has a name", "<p>Some readings are unexplained: see below.</p>\n");
   if (rows.empty())

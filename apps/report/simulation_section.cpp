@@ -86,9 +86,10 @@ std::string simulation_section(const std::vector<StreamComparison>& comparisons)
   std::string rows, plots;
   for (const StreamComparison& c : comparisons) {
     rows += "<tr><td>" + escaped(c.stream + " " + c.channel) + " [" + escaped(c.unit) + "]</td>" +
-            cells(c.mean, c.sigma) + cells(c.stated.mean, c.stated.sigma) + "<td>" +
+            cells(c.recorded.mean, c.recorded.sigma) +
+            cells(c.stated.second.mean, c.stated.second.sigma) + "<td>" +
             fixed(c.stated.distance, 2) + "</td>";
-    rows += c.extended ? cells(c.extended->mean, c.extended->sigma) + "<td>" +
+    rows += c.extended ? cells(c.extended->second.mean, c.extended->second.sigma) + "<td>" +
                              fixed(c.extended->distance, 2) + "</td>"
                        : "<td>-</td><td>-</td>";
     rows += "</tr>";

@@ -65,7 +65,7 @@ void note_impossible(const ScoreTable& table,
 /// already explains by other effects.
 [[nodiscard]] std::vector<std::string> not_observable(const CauseModel& model,
                                                       const ScoreTable& table);
-/// Those that would have been named but for one accepted effect, which takes up what they change.
+/// Effects that would have been named without one accepted effect, which explains the same changes.
 [[nodiscard]] std::vector<HiddenEffect> hidden_effects(const CauseModel& model,
                                                        const ScoreTable& table);
 

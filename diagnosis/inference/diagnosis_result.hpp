@@ -32,7 +32,7 @@ struct ReckoningError {
   double over_s = 5.0;       ///< length of each piece of the drive
   std::size_t pieces = 0;    ///< pieces compared; one begins each second
   double position_m = 0.0;   ///< root mean square over the pieces
-  double heading_rad = 0.0;  ///< likewise
+  double heading_rad = 0.0;  ///< root mean square over the pieces
 };
 
 struct FoundCause {
@@ -79,8 +79,7 @@ struct StreamComparison {
   std::string channel;  ///< "yaw_rate"
   std::string unit;     ///< "deg/s"
   std::size_t rows = 0;
-  double mean = 0.0;  ///< of the recorded drive, in `unit`
-  double sigma = 0.0;
+  Moments recorded;                          ///< of the recorded drive, in `unit`
   SampleDifference stated;                   ///< simulated as the files state the car
   std::optional<SampleDifference> extended;  ///< with the effects found; empty: none was found
 };

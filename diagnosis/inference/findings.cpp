@@ -163,7 +163,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   d.notes = check_notes(problem.channels(), left, d.after);
   d.looked_for = result.looked_for;
   d.not_observable = result.not_observable;
-  // Such an effect was looked for in vain: it is neither shown nor absent.
+  // The drive decides neither for nor against such an effect, so it does not count as looked for.
   for (const HiddenEffect& h : result.hidden) {
     d.notes.push_back(h.name + " is not separable in this drive from " + h.by);
     std::erase(d.looked_for, h.name);

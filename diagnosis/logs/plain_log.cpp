@@ -119,7 +119,7 @@ class LogReader {
     auto& poses = log_.streams.poses;
     for (std::size_t i = 0; i < n; ++i)
       poses.push_back({table.stamps()[i], x[i], y[i], derived ? 0.0 : heading[i]});
-    stand(table, yaml);
+    read_attitudes(table, yaml);
     if (drop_m > 0.0) drop_jumps(drop_m);
     if (derived) {
       derive_course(poses, chord);
@@ -132,8 +132,8 @@ class LogReader {
     }
   }
 
-  // Slope and bank at the poses, which are not yet thinned.
-  void stand(StreamReader& table, YamlMap& yaml) {
+  // Reads slope and bank at all poses, before jumps are dropped.
+  void read_attitudes(StreamReader& table, YamlMap& yaml) {
     const auto& poses = log_.streams.poses;
     const auto of = [&](const std::string& key) {
       return yaml.has(key) ? column(table, yaml, key, Quantity::kAngle) : std::vector<double>();
@@ -327,7 +327,7 @@ class LogReader {
   PlainLog log_;
   bool has_track_ = false;
   std::vector<double> heights_;      // of the poses; empty: not logged
-  std::vector<Attitude> attitudes_;  // likewise
+  std::vector<Attitude> attitudes_;  // of the poses; empty: not logged
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "base/median.hpp"
 #include "diagnosis/motion/motion_fit.hpp"
+#include "diagnosis/numerics/white_scatter.hpp"
 #include "diagnosis/streams/course_by_motion.hpp"
 #include "diagnosis/streams/dead_reckoning.hpp"
 
@@ -161,28 +162,22 @@ class Bridge {
   PoseMoment from_, to_;
 };
 
-// Standard deviation of white noise in a value of neighbouring poses, by third differences: motion
-// is smoother than that.
 template <typename Value>
 double pose_scatter(const std::vector<PoseSample>& poses, const Value& value_of) {
-  constexpr double kOfThird = 20.0;          // variance of a third difference, 1 + 9 + 9 + 1
-  constexpr double kMedianToSigma = 1.4826;  // of the size of a normal deviate
-  std::vector<double> sizes;
-  for (std::size_t i = 3; i < poses.size(); ++i)
-    sizes.push_back(std::abs(value_of(poses[i]) - value_of(poses[i - 3]) -
-                             3.0 * (value_of(poses[i - 1]) - value_of(poses[i - 2]))));
-  return sizes.empty() ? 0.0 : kMedianToSigma * median(std::move(sizes)) / std::sqrt(kOfThird);
+  std::vector<double> values;
+  for (const PoseSample& pose : poses) values.push_back(value_of(pose));
+  return white_scatter(values);
 }
 
-// How far lines through the poses tell speed and turn.
+// Lines through the poses, from which speed and turn rate are taken.
 struct PoseLines {
-  double window_s = 0.6;   // over which they tell them well enough, if that is not too long
+  double window_s = 0.6;   // length of the lines
   double scatter_m = 0.0;  // of a position
-  bool too_rough = false;  // no window is short and long enough
+  bool too_rough = false;  // longer lines than a car drives straight would be needed
 };
 
-// Of poses that scatter by decimetres 0.6 s do not tell speed and turn, and about such a start the
-// fit of a car that creeps goes astray.
+// Where poses scatter by decimetres, lines over 0.6 s give no speed and no turn rate. The fit of a
+// slow car does not converge from such a start.
 PoseLines lines_of(const std::vector<PoseSample>& poses) {
   constexpr double kSpeedWanted = 0.05;  // [m/s]
   constexpr double kTurnWanted = 0.02;   // [rad/s]
@@ -212,7 +207,7 @@ Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
   const double to = obs.poses.back().t_s + std::max(0.0, late_s) + 2.0 * obs.step_s;
   const auto knots = static_cast<std::size_t>(std::ceil((to - from) / obs.step_s)) + 1;
   Trajectory trajectory(from, obs.step_s, std::max<std::size_t>(knots, 3));
-  // The headings of such poses are a course, which their scatter hides.
+  // Without measured headings, the scatter of such poses hides the course.
   if (!obs.poses_have_heading && pose_lines.too_rough &&
       lay_way_on_positions(obs, pose_lines.scatter_m, trajectory)) {
     trajectory.integrate();

@@ -10,6 +10,7 @@
 #include "diagnosis/motion/grammar_hooks.hpp"
 #include "diagnosis/streams/motion_effects.hpp"
 #include "diagnosis/streams/motion_prediction.hpp"
+#include "diagnosis/streams/shown_unit.hpp"
 
 namespace roadbook {
 namespace {
@@ -166,29 +167,6 @@ std::vector<std::pair<double, double>> term_curve(const Observations& obs,
   return thinned;
 }
 
-// Unit of a channel for people, and the factor from its own unit. Increments of wheels are shown as
-// rates.
-std::pair<const char*, double> shown_unit(const Observations& obs, Channel channel) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
-  const double interval_s = obs.wheels.size() > 1
-                                ? (obs.wheels.back().t_s - obs.wheels.front().t_s) /
-                                      static_cast<double>(obs.wheels.size() - 1)
-                                : 1.0;
-  switch (channel) {
-    case Channel::kWheelDistance:
-      return {"cm/s", 100.0 / interval_s};
-    case Channel::kWheelHeading:
-      return {"deg/s", kDegrees / interval_s};
-    case Channel::kGyro:
-      return {"deg/s", kDegrees};
-    case Channel::kSteering:
-    case Channel::kPoseHeading:
-      return {"deg", kDegrees};
-    default:
-      return {"cm", 100.0};
-  }
-}
-
 }  // namespace
 
 EvidencePlot motion_evidence(const Observations& obs,
@@ -206,9 +184,9 @@ EvidencePlot motion_evidence(const Observations& obs,
   plot.channel = std::string(stream_of(channel)) + " " + std::string(name_of(channel));
   plot.covariate = covariate.axis;
   plot.bins = evidence_bins(std::move(old), std::move(now));
-  const auto [unit, factor] = shown_unit(obs, channel);
-  plot.deviation = factor * spread;
-  plot.unit = unit;
+  const ShownUnit shown = shown_unit(obs, channel);
+  plot.deviation = shown.factor * spread;
+  plot.unit = shown.name;
   if (cause.kind == CandidateKind::kGrammar) {
     plot.curve = term_curve(obs, extended, cause, covariate);
     plot.curve_unit = cause.unit;

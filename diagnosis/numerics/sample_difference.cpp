@@ -8,26 +8,14 @@
 namespace roadbook {
 namespace {
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
-}
-
-double sigma_of(const std::vector<double>& values, double mean) {
-  double squares = 0.0;
-  for (const double v : values) squares += (v - mean) * (v - mean);
-  return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 // Independent values that are worth as much as `values`, by the correlation of neighbours.
-double worth(const std::vector<double>& values, double mean, double sigma) {
+double worth(const std::vector<double>& values, const Moments& m) {
   const auto n = static_cast<double>(values.size());
-  if (sigma <= 0.0) return n;
+  if (m.sigma <= 0.0) return n;
   double products = 0.0;
   for (std::size_t i = 0; i + 1 < values.size(); ++i)
-    products += (values[i] - mean) * (values[i + 1] - mean);
-  const double r = std::clamp(products / (n * sigma * sigma), 0.0, 0.999);
+    products += (values[i] - m.mean) * (values[i + 1] - m.mean);
+  const double r = std::clamp(products / (n * m.sigma * m.sigma), 0.0, 0.999);
   return std::max(2.0, n * (1.0 - r) / (1.0 + r));
 }
 
@@ -51,15 +39,24 @@ double quantile_of(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
+Moments moments_of(const std::vector<double>& values) {
+  ROADBOOK_ASSERT(!values.empty());
+  const auto n = static_cast<double>(values.size());
+  Moments m;
+  for (const double v : values) m.mean += v / n;
+  double squares = 0.0;
+  for (const double v : values) squares += (v - m.mean) * (v - m.mean);
+  m.sigma = std::sqrt(squares / n);
+  return m;
+}
+
 SampleDifference compare_samples(const std::vector<double>& first,
                                  const std::vector<double>& second) {
   ROADBOOK_ASSERT(first.size() > 1 && second.size() > 1);
   SampleDifference difference;
-  const double mean = mean_of(first);
-  difference.mean = mean_of(second);
-  difference.sigma = sigma_of(second, difference.mean);
-  const double a = worth(first, mean, sigma_of(first, mean));
-  const double b = worth(second, difference.mean, difference.sigma);
+  difference.second = moments_of(second);
+  const double a = worth(first, moments_of(first));
+  const double b = worth(second, difference.second);
   std::vector<double> x = first;
   std::vector<double> y = second;
   std::sort(x.begin(), x.end());

@@ -6,10 +6,16 @@
 
 namespace roadbook {
 
+struct Moments {
+  double mean = 0.0;
+  double sigma = 0.0;  ///< standard deviation about the mean
+};
+/// Of one value or more.
+[[nodiscard]] Moments moments_of(const std::vector<double>& values);
+
 /// How the second of two samples of one quantity differs from the first.
 struct SampleDifference {
-  double mean = 0.0;  ///< of the second sample
-  double sigma = 0.0;
+  Moments second;  ///< of the second sample
   /// Largest difference of the two distribution functions (Kolmogorov, Smirnov), 0 to 1.
   double distance = 0.0;
   double p = 1.0;  ///< that independent samples differ as much; correlated readings count for less

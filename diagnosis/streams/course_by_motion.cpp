@@ -115,7 +115,7 @@ bool lay_way_on_positions(const Observations& obs, double scatter_m, Trajectory&
       if (end - begin >= 3 && (laid.spread >= wanted || half >= kLongest_s)) break;
       if (begin == 0 && end >= poses.size()) break;
     }
-    // A car that stands for a minute keeps its heading.
+    // At rest the heading does not change.
     const double turn = laid.spread < 0.01 * wanted
                             ? last
                             : last + std::remainder(laid.turn - last, 2.0 * std::numbers::pi);

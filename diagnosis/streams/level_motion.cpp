@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/median.hpp"
+#include "diagnosis/numerics/white_scatter.hpp"
 
 namespace roadbook {
 namespace {
@@ -12,7 +12,7 @@ constexpr double kLevel = 0.01;  // [rad]
 constexpr double kNoRoad = 0.6;  // [rad]
 
 // The attitude at a time, and how fast the slope grows.
-struct Standing {
+struct Tilt {
   double slope = 0.0;
   double bank = 0.0;
   double slope_rate = 0.0;  // [rad/s]
@@ -23,7 +23,7 @@ class AttitudeAt {
   explicit AttitudeAt(const std::vector<Attitude>& all) : all_(all) {}
 
   // Cheapest for times that ascend.
-  Standing operator()(double t_s) {
+  Tilt operator()(double t_s) {
     if (t_s <= all_.front().t_s) return {all_.front().slope_rad, all_.front().bank_rad, 0.0};
     if (t_s >= all_.back().t_s) return {all_.back().slope_rad, all_.back().bank_rad, 0.0};
     if (t_s < all_[next_].t_s) next_ = 0;
@@ -42,18 +42,18 @@ class AttitudeAt {
 };
 
 // From the rate about the car's own axis alone; the pitching follows from the slope.
-double heading_rate(const Standing& s, double about_z) {
+double heading_rate(const Tilt& s, double about_z) {
   return (about_z - std::sin(s.bank) * s.slope_rate) / (std::cos(s.slope) * std::cos(s.bank));
 }
 
 // From the rates about two of the car's axes.
-double heading_rate(const Standing& s, double about_z, double about_y) {
+double heading_rate(const Tilt& s, double about_z, double about_y) {
   return (std::cos(s.bank) * about_z + std::sin(s.bank) * about_y) / std::cos(s.slope);
 }
 
 void level_wheels(const std::vector<Attitude>& attitudes, MotionStreams& streams) {
   const WheelModel& model = streams.wheel_model;
-  AttitudeAt standing(attitudes);
+  AttitudeAt tilt_at(attitudes);
   double left = 0.0, right = 0.0;
   WheelSample before;
   for (std::size_t i = 0; i < streams.wheels.size(); ++i) {
@@ -63,7 +63,7 @@ void level_wheels(const std::vector<Attitude>& attitudes, MotionStreams& streams
       right = read.right_rad;
     } else {
       const double seconds = read.t_s - before.t_s;
-      const Standing s = standing(0.5 * (read.t_s + before.t_s));
+      const Tilt s = tilt_at(0.5 * (read.t_s + before.t_s));
       const double left_m = model.radius_left_m * (read.left_rad - before.left_rad);
       const double right_m = model.radius_right_m * (read.right_rad - before.right_rad);
       const double way = 0.5 * (left_m + right_m) * std::cos(s.slope);
@@ -90,19 +90,13 @@ bool is_tilted(const std::vector<Attitude>& attitudes) {
   return beyond(kLevel) && !beyond(kNoRoad);
 }
 
-// [m] of way over which a line tells the slope: its variance is 12 scatter^2 spacing / length^3.
+// Length of way [m] over which a line gives the slope: its variance is 12 scatter^2 spacing /
+// length^3.
 double length_of_lines(const std::vector<double>& heights, double spacing_m) {
-  constexpr double kWanted = 0.01;   // [rad]
-  constexpr double kShort = 4.0;     // [m]
-  constexpr double kLong = 200.0;    // [m]
-  constexpr double kOfThird = 20.0;  // variance of a third difference of white noise
-  constexpr double kMedianToSigma = 1.4826;
-  std::vector<double> thirds;
-  for (std::size_t i = 3; i < heights.size(); ++i)
-    thirds.push_back(
-        std::abs(heights[i] - heights[i - 3] - 3.0 * (heights[i - 1] - heights[i - 2])));
-  if (thirds.empty()) return kShort;
-  const double scatter = kMedianToSigma * median(std::move(thirds)) / std::sqrt(kOfThird);
+  constexpr double kWanted = 0.01;  // [rad]
+  constexpr double kShort = 4.0;    // [m]
+  constexpr double kLong = 200.0;   // [m]
+  const double scatter = white_scatter(heights);
   return std::clamp(std::cbrt(12.0 * scatter * scatter * spacing_m / (kWanted * kWanted)), kShort,
                     kLong);
 }
@@ -115,11 +109,11 @@ void level_motion(const std::vector<Attitude>& road,
                   MotionStreams& streams) {
   if (is_tilted(road)) level_wheels(road, streams);
   if (!is_tilted(body)) return;
-  AttitudeAt standing(body);
+  AttitudeAt tilt_at(body);
   const bool three_axes = pitch_rates.size() == streams.gyro.size();
   for (std::size_t i = 0; i < streams.gyro.size(); ++i) {
     GyroSample& gyro = streams.gyro[i];
-    const Standing s = standing(gyro.t_s);
+    const Tilt s = tilt_at(gyro.t_s);
     gyro.rate_rad_s = three_axes ? heading_rate(s, gyro.rate_rad_s, pitch_rates[i].rate_rad_s)
                                  : heading_rate(s, gyro.rate_rad_s);
   }
@@ -127,7 +121,7 @@ void level_motion(const std::vector<Attitude>& road,
 
 std::vector<Attitude> slopes_of(const std::vector<PoseSample>& poses,
                                 const std::vector<double>& heights_m) {
-  // From anchor to anchor, so that the scatter of standing or slow poses does not add up.
+  // From anchor to anchor, so that the scatter of tilt_at or slow poses does not add up.
   constexpr double kAnchor_m = 1.0;
   std::vector<double> way;
   double base = 0.0;
@@ -148,7 +142,7 @@ std::vector<Attitude> slopes_of(const std::vector<PoseSample>& poses,
     while (way[i] - way[begin] > 0.5 * over_m) ++begin;
     while (end < poses.size() && way[end] - way[i] <= 0.5 * over_m) ++end;
     double n = 0.0, s = 0.0, ss = 0.0, z = 0.0, sz = 0.0;
-    // A car that stands for long has many poses in one place: some of them do.
+    // While the car is at rest there are many poses in one place. Some of them are enough.
     const std::size_t stride = 1 + (end - begin) / 500;
     for (std::size_t k = begin; k < end; k += stride) {
       const double d = way[k] - way[i];

@@ -105,7 +105,7 @@ Eigen::Isometry3d rescaled(const Eigen::Isometry3d& T_to,
 }
 
 // Two edges close to each other must tell the same story: the odometry between their ends is good.
-// Without wheels, this holds after its scale at the two passes is measured by both loops alike.
+// Without wheels, the scale between the two passes must agree too, and is applied first.
 bool edges_agree(const MappingInput& input, const LoopClosure& one, const LoopClosure& other) {
   const LoopEdge& a = one.edge;
   const LoopEdge& b = other.edge;

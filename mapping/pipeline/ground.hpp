@@ -59,7 +59,7 @@ struct ScaleProfile {
 };
 
 /// Mean height [m] of the cameras above the vehicle frame's origin, which lies on the ground; empty
-/// if it is not known: the calibration of a camera that nobody measured states 0.
+/// if it is not known: a calibration without a measured height states 0.
 [[nodiscard]] std::optional<double> known_camera_height(const Rig& rig);
 
 /// Estimates the factors that scale odometry without wheels to metres, from the cameras' height

@@ -62,8 +62,8 @@ TEST(LevelMotion, SlopesFollowFromHeightsAndRoughOnesFromLongerLines) {
   EXPECT_LT(off(slopes_of(drive.streams.poses, rough)), 0.02);
 }
 
-// Without levelling the hills are an error of the wheels' radius; with it there is none, and a true
-// one is found in its size.
+// Without levelling, hills look like an error of the wheels' radius. With levelling no error is
+// named, and a radius that is really wrong is found with its size.
 TEST(LevelMotion, HillsRaiseNoAlarmAndHideNoRadius) {
   int alarms_before = 0;
   for (std::uint64_t seed = 30; seed < 34; ++seed) {

@@ -30,8 +30,8 @@ TEST(SampleDifference, IsThatOfShiftedNormalsByHand) {
   const SampleDifference moved = compare_samples(first, normal_sample(4000, 1.0, 1.0, 3));
   EXPECT_NEAR(moved.distance, std::erf(0.5 / std::sqrt(2.0)), 0.03);
   EXPECT_LT(moved.p, 1e-6);
-  EXPECT_NEAR(moved.mean, 1.0, 0.05);
-  EXPECT_NEAR(moved.sigma, 1.0, 0.05);
+  EXPECT_NEAR(moved.second.mean, 1.0, 0.05);
+  EXPECT_NEAR(moved.second.sigma, 1.0, 0.05);
   for (const auto& [x, y] : moved.quantiles) EXPECT_NEAR(y - x, 1.0, 0.25);
 }
 
@@ -72,18 +72,19 @@ TEST(SimulatedAgain, ShowsABiasAndThatTheExtendedModelHasIt) {
   ASSERT_NE(gyro, nullptr);
   ASSERT_TRUE(gyro->extended);
   EXPECT_EQ(gyro->unit, "deg/s");
-  EXPECT_NEAR(gyro->mean, 0.573, 0.06);
-  EXPECT_NEAR(gyro->stated.mean, 0.0, 0.06);
-  EXPECT_NEAR(gyro->extended->mean, 0.573, 0.06);
+  EXPECT_NEAR(gyro->recorded.mean, 0.573, 0.06);
+  EXPECT_NEAR(gyro->stated.second.mean, 0.0, 0.06);
+  EXPECT_NEAR(gyro->extended->second.mean, 0.573, 0.06);
   EXPECT_GT(gyro->stated.distance, 0.5);
   EXPECT_LT(gyro->extended->distance, 0.12);
   // The noise of the fit is on the safe side.
-  EXPECT_GT(gyro->extended->sigma, 0.9 * gyro->sigma);
-  EXPECT_LT(gyro->extended->sigma, 1.4 * gyro->sigma);
+  EXPECT_GT(gyro->extended->second.sigma, 0.9 * gyro->recorded.sigma);
+  EXPECT_LT(gyro->extended->second.sigma, 1.4 * gyro->recorded.sigma);
   const StreamComparison* reckoned = stream(d, "dead reckoning");
   ASSERT_NE(reckoned, nullptr);
-  EXPECT_NEAR(reckoned->mean, reckoned->extended->mean, 0.3 * reckoned->mean);
-  EXPECT_LT(reckoned->stated.mean, 0.5 * reckoned->mean);
+  EXPECT_NEAR(reckoned->recorded.mean, reckoned->extended->second.mean,
+              0.3 * reckoned->recorded.mean);
+  EXPECT_LT(reckoned->stated.second.mean, 0.5 * reckoned->recorded.mean);
 }
 
 TEST(SimulatedAgain, OfASoundCarIsTheSameDistributionAndTheSameBytesTwice) {
@@ -96,8 +97,8 @@ TEST(SimulatedAgain, OfASoundCarIsTheSameDistributionAndTheSameBytesTwice) {
     EXPECT_FALSE(c.extended) << c.stream;
     if (c.stream == "dead reckoning") {
       // The noise of the fit is on the safe side.
-      EXPECT_GT(c.stated.mean, 0.8 * c.mean);
-      EXPECT_LT(c.stated.mean, 2.0 * c.mean);
+      EXPECT_GT(c.stated.second.mean, 0.8 * c.recorded.mean);
+      EXPECT_LT(c.stated.second.mean, 2.0 * c.recorded.mean);
       continue;
     }
     EXPECT_LT(c.stated.distance, 0.2) << c.stream << ' ' << c.channel;

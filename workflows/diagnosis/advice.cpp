@@ -35,12 +35,6 @@ std::string sensor_words(const std::string& sensor) {
   return sensor.starts_with("cam") ? "camera " + sensor : sensor;
 }
 
-std::string capital(std::string text) {
-  if (!text.empty())
-    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  return text;
-}
-
 std::string with_unit(const std::string& number, std::string_view unit) {
   return unit.empty() ? number : number + " " + std::string(unit);
 }
@@ -136,6 +130,12 @@ std::string certainty_of(const FoundCause& c, bool of_log) {
 
 }  // namespace
 
+std::string capitalised(std::string text) {
+  if (!text.empty())
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
 std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehicle>& stated) {
   std::vector<Advice> all;
   const bool of_log = stated && stated->of_log;
@@ -145,7 +145,8 @@ std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehi
     const auto words = effect_words(c.effect, of_log);
     const double factor = words ? words->factor : 1.0;
     const std::string_view unit = words ? words->unit : std::string_view(c.unit);
-    const int digits = digits_for(0.5 * factor * (c.high - c.low));
+    constexpr int kMostDigits = 3;
+    const int digits = std::min(digits_for(0.5 * factor * (c.high - c.low)), kMostDigits);
     // A fault with words for either sign is said with its size alone.
     const double sign = words && !words->less.empty() && c.size < 0.0 ? -1.0 : 1.0;
     const auto shown = [&](double size) { return fixed(sign * factor * size, digits); };
@@ -161,8 +162,8 @@ std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehi
     advice.fault = c.effect;
     if (words) {
       const std::string_view fault = sign < 0.0 ? words->less : words->more;
-      advice.fault = capital(filled(fault, values));
-      advice.action = capital(filled(words->act, values));
+      advice.fault = capitalised(filled(fault, values));
+      advice.action = capitalised(filled(words->act, values));
       advice.of_place = words->of_place;
     }
     if (!c.session.empty()) advice.fault += " (in " + c.session + ")";
@@ -171,12 +172,11 @@ std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehi
     advice.certainty = certainty_of(c, of_log);
     if (!c.inseparable.empty() && !c.separating.empty()) {
       if (!advice.action.empty()) advice.action += ", if it is this one; ";
-      advice.action += advice.action.empty() ? capital(c.separating) : c.separating;
+      advice.action += advice.action.empty() ? capitalised(c.separating) : c.separating;
     }
     if (c.reckoned_without && d.reckoned_after)
-      advice.gain = "left as it stands, dead reckoning is off by " +
-                    error_text(*c.reckoned_without) + " after " +
-                    fixed(c.reckoned_without->over_s, 0) + " s, instead of " +
+      advice.gain = "Uncorrected, dead reckoning is off by " + error_text(*c.reckoned_without) +
+                    " after " + fixed(c.reckoned_without->over_s, 0) + " s, instead of " +
                     error_text(*d.reckoned_after);
     all.push_back(std::move(advice));
   }
@@ -224,7 +224,7 @@ std::vector<std::string> advice_lines(const Diagnosis& d,
   for (const Advice& advice : advice_of(d, stated)) {
     lines.push_back(advice.fault + ": " + advice.size + ", " + advice.certainty);
     if (!advice.action.empty()) lines.push_back("  " + advice.action);
-    if (!advice.gain.empty()) lines.push_back("  " + capital(advice.gain));
+    if (!advice.gain.empty()) lines.push_back("  " + advice.gain);
   }
   if (const std::string text = reckoning_text(d); !text.empty()) lines.push_back(text);
   return lines;

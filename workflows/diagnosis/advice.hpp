@@ -12,6 +12,9 @@ namespace roadbook {
 // A diagnosis in the words of those who keep the car: what is wrong, by how much, how sure that is,
 // what to do, and what it gains. The evidence behind it stays in the `Diagnosis`.
 
+/// The text with a capital letter in front.
+[[nodiscard]] std::string capitalised(std::string text);
+
 /// The vehicle as the files of the drive state it.
 struct StatedVehicle {
   WheelModel wheels;

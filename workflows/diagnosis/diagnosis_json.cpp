@@ -137,8 +137,8 @@ ordered_json comparison_json(const Diagnosis& d) {
   ordered_json all = ordered_json::array();
   for (const StreamComparison& c : d.simulated) {
     const auto simulated = [](const SampleDifference& s) {
-      return ordered_json{{"mean", s.mean},
-                          {"sigma", s.sigma},
+      return ordered_json{{"mean", s.second.mean},
+                          {"sigma", s.second.sigma},
                           {"distance", s.distance},
                           {"p", s.p},
                           {"quantiles", s.quantiles}};
@@ -147,8 +147,8 @@ ordered_json comparison_json(const Diagnosis& d) {
                    {"channel", c.channel},
                    {"unit", c.unit},
                    {"rows", c.rows},
-                   {"mean", c.mean},
-                   {"sigma", c.sigma},
+                   {"mean", c.recorded.mean},
+                   {"sigma", c.recorded.sigma},
                    {"stated", simulated(c.stated)},
                    {"extended", c.extended ? simulated(*c.extended) : ordered_json()}});
   }
@@ -158,17 +158,18 @@ ordered_json comparison_json(const Diagnosis& d) {
 std::vector<std::string> comparison_lines(const Diagnosis& d) {
   std::vector<std::string> lines;
   for (const StreamComparison& c : d.simulated) {
-    const int places = decimal_places(0.1 * std::max(c.sigma, c.stated.sigma));
+    const int places = decimal_places(0.1 * std::max(c.recorded.sigma, c.stated.second.sigma));
     const auto moments = [&](double mean, double sigma) {
       return fixed(mean, places) + " +- " + fixed(sigma, places) + " " + c.unit;
     };
-    lines.push_back(
-        "simulated again, " + c.stream + " " + c.channel + ": recorded " +
-        moments(c.mean, c.sigma) + "; as stated " + moments(c.stated.mean, c.stated.sigma) +
-        ", distance " + fixed(c.stated.distance, 3) +
-        (c.extended ? "; with the effects found " + moments(c.extended->mean, c.extended->sigma) +
-                          ", distance " + fixed(c.extended->distance, 3)
-                    : ""));
+    lines.push_back("simulated again, " + c.stream + " " + c.channel + ": recorded " +
+                    moments(c.recorded.mean, c.recorded.sigma) + "; as stated " +
+                    moments(c.stated.second.mean, c.stated.second.sigma) + ", distance " +
+                    fixed(c.stated.distance, 3) +
+                    (c.extended ? "; with the effects found " +
+                                      moments(c.extended->second.mean, c.extended->second.sigma) +
+                                      ", distance " + fixed(c.extended->distance, 3)
+                                : ""));
   }
   return lines;
 }

@@ -50,7 +50,7 @@ constexpr std::array kWords{
                 "the tyres grow with speed", "the tyres shrink with speed", "% at 10 m/s", 1000.0,
                 "keep it in the model (`--write-model`); calibrate the radius at the usual speed"},
     EffectWords{"wheels0.eccentricity", "centring of the wheel encoder",
-                "the wheel encoder reads an angle that errs once a turn", "", "deg", kToDegrees,
+                "the wheel encoder has an error that repeats each turn", "", "deg", kToDegrees,
                 "look at the encoder's ring: it is not centred"},
     EffectWords{"wheels0.wet_patch", "slip on wet ground", "the wheels slip on a wet place",
                 "the wheels turn too little on one place", "%", 100.0,

@@ -127,7 +127,7 @@ TEST(Advice, ListsWhatIsFineAndWhatAnotherDriveShows) {
   EXPECT_EQ(spots[0].nouns, std::vector<std::string>{"growth of the tyres with speed"});
 }
 
-// The first screen has no word of statistics: they stand in fold-outs.
+// The first screen has no words of statistics. The fold-outs have them.
 TEST(Advice, ThePageBeginsWithFaultSizeAndWhatToDo) {
   Diagnosis d;
   d.causes.push_back(cause("imu0.gyro_bias", 0.0041, 0.0001));
