@@ -58,6 +58,16 @@ double SessionsProblem::level_of_names() const {
   return level;
 }
 
+std::vector<std::size_t> SessionsProblem::channels_of_reference() const {
+  std::vector<std::size_t> all;
+  std::size_t first = 0;
+  for (const SessionProblem& s : sessions_) {
+    for (const std::size_t c : s.problem->channels_of_reference()) all.push_back(first + c);
+    first += s.problem->channels().size();
+  }
+  return all;
+}
+
 bool SessionsProblem::intervals_of_blocks() const {
   return std::any_of(sessions_.begin(), sessions_.end(),
                      [](const SessionProblem& s) { return s.problem->intervals_of_blocks(); });

@@ -36,6 +36,7 @@ class SessionsProblem final : public CauseProblem {
   [[nodiscard]] double level_of_names() const override;
   /// Where any of the drives' problems needs it.
   [[nodiscard]] bool intervals_of_blocks() const override;
+  [[nodiscard]] std::vector<std::size_t> channels_of_reference() const override;
   [[nodiscard]] bool gains_need_refit() const override;
   [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
   [[nodiscard]] Projection project(const CauseModel& model,

@@ -16,7 +16,7 @@ constexpr double kLeastOfNames = 1.0;
 // at one place lives in one or two blocks and has no such scatter.
 bool survives_blocks(const ScoreTable& table, const Shortlisted& n) {
   constexpr double kMostRobust = 1e-3;
-  return table.robust_p(n.candidate) <= kMostRobust;
+  return chi_squared_tail(table.robust_statistic(n.candidate), n.score.freedom) <= kMostRobust;
 }
 
 }  // namespace

@@ -146,6 +146,9 @@ class CauseProblem {
   /// Whether intervals take the scatter of one-second blocks where that is wider than what
   /// independent rows of the estimated noise would have.
   [[nodiscard]] virtual bool intervals_of_blocks() const { return false; }
+  /// Indices into `channels()` whose errors may last for seconds: those of a reference. None where
+  /// the model allows for such errors itself.
+  [[nodiscard]] virtual std::vector<std::size_t> channels_of_reference() const { return {}; }
   /// True if the readings are so non-linear in the sizes that a held-out gain needs a refit of the
   /// model without the effect.
   [[nodiscard]] virtual bool gains_need_refit() const { return false; }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNameLevel = 0.05;       // for each name
 constexpr double kAlikeColumns = 0.25;    // squared cosine of columns
-constexpr double kMostRobustName = 0.01;  // by the scatter of blocks
+constexpr double kMostRobustName = 0.01;  // by the scatter of one-second blocks
 
 struct Lack {
   double p = 1.0;
@@ -26,6 +26,10 @@ std::string text_of(const Lack& lack) {
   return lack.what + p;
 }
 
+bool blocks_agree(const ScoreTable& table, std::size_t c, const Score& score) {
+  return chi_squared_tail(table.robust_statistic(c), score.freedom) < kMostRobustName;
+}
+
 // The strongest test of one name, uncorrected; `tests`: how many there were.
 void look(const ScoreTable& table,
           std::size_t c,
@@ -35,7 +39,7 @@ void look(const ScoreTable& table,
   const Score score = table.score(c);
   if (score.information.trace() <= 0.0) return;
   tests += 1.0;
-  if ((!worst || score.p < worst->p) && table.robust_p(c) < kMostRobustName) worst = Lack{score.p, what};
+  if ((!worst || score.p < worst->p) && blocks_agree(table, c, score)) worst = Lack{score.p, what};
 }
 
 void look_at_variations(const CauseProblem& problem,

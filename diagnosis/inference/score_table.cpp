@@ -3,10 +3,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
+#include <utility>
 
 #include "base/error.hpp"
+#include "diagnosis/numerics/block_scatter.hpp"
 
 namespace roadbook {
 namespace {
@@ -36,41 +37,11 @@ Eigen::MatrixXd gathered(const Eigen::MatrixXd& cross, const Candidate& c) {
   return block;
 }
 
-// What a row adds to a sum, and when. Problems may have their rows in another order than that of
-// time: one person after the other.
-struct Part {
-  double t_s = 0.0;
-  double value = 0.0;
-};
-
-template <typename Value>
-std::vector<Part> parts_in_time(const Innovations& in, const Value& value) {
-  std::vector<Part> parts(in.of.size());
-  for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {in.of[i].t_s, value(i)};
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const Part& a, const Part& b) { return a.t_s < b.t_s; });
-  return parts;
-}
-
-// Sum over the blocks of the squares of what the parts of each block come to.
-double squares_of_blocks(const std::vector<Part>& parts, double length_s) {
-  double squares = 0.0, block = 0.0, until = -1e300;
-  for (const Part& p : parts) {
-    if (p.t_s > until) {
-      squares += block * block;
-      block = 0.0;
-      until = p.t_s + length_s;
-    }
-    block += p.value;
-  }
-  return squares + block * block;
-}
-
-// Upper tail of the F distribution.
-double f_tail(double ratio, double freedom, double other) {
-  if (!(ratio > 0.0)) return 1.0;
-  return boost::math::cdf(
-      boost::math::complement(boost::math::fisher_f_distribution<double>(freedom, other), ratio));
+template <typename Part>
+double squares_of_seconds(const Innovations& in, const Part& part) {
+  std::vector<BlockPart> parts(in.of.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {in.of[i].t_s, part(i), 0.0};
+  return squares_of_blocks(std::move(parts), 1.0);
 }
 
 }  // namespace
@@ -260,7 +231,7 @@ double ScoreTable::made_up(std::size_t c, std::size_t a) const {
   return squares > 0.0 ? with.dot(pseudo_solve(own_[c], with).col(0)) / squares : 0.0;
 }
 
-double ScoreTable::robust_p(std::size_t c) const {
+double ScoreTable::robust_statistic(std::size_t c) const {
   const Score s = score(c);
   const Candidate& candidate = all_.candidates[c];
   const Eigen::Index n = signed_index(all_.accepted);
@@ -268,43 +239,18 @@ double ScoreTable::robust_p(std::size_t c) const {
   const Eigen::MatrixXd C = gathered(cross_, candidate).bottomRows(n);
   const Eigen::VectorXd nuisance = pseudo_solve(F, C * s.size).col(0);
   const Eigen::VectorXd taken = pseudo_solve(F, base_.col(0).tail(n)).col(0);
-  const auto direction = [&](std::size_t i) {
-    const double* row = all_.innovations.row(i);
-    double sum = -Eigen::Map<const Eigen::VectorXd>(row + 1, n).dot(nuisance);
-    for (Eigen::Index k = 0; k < s.size.size(); ++k)
-      sum += row[side_of(candidate, k)] * s.size[k];
-    return sum;
-  };
   double sum = 0.0;
-  const std::vector<Part> left = parts_in_time(all_.innovations, [&](std::size_t i) {
+  const double squares = squares_of_seconds(all_.innovations, [&](std::size_t i) {
     const double* row = all_.innovations.row(i);
-    const double along = direction(i);
-    const double e = row[0] - Eigen::Map<const Eigen::VectorXd>(row + 1, n).dot(taken);
-    sum += along * e;
-    return along * (e - along);  // residual after the fit of the candidate
+    const Eigen::Map<const Eigen::VectorXd> a(row + 1, n);
+    double direction = -a.dot(nuisance);
+    for (Eigen::Index k = 0; k < s.size.size(); ++k)
+      direction += row[side_of(candidate, k)] * s.size[k];
+    const double e = row[0] - a.dot(taken);
+    sum += direction * e;
+    return direction * (e - direction);  // residual after the fit of the candidate
   });
-  const std::vector<Part> shown = parts_in_time(
-      all_.innovations, [&](std::size_t i) { return direction(i) * direction(i); });
-  if (left.empty()) return 1.0;
-  const double all = s.statistic;  // sum of what is shown
-  const double duration = left.back().t_s - left.front().t_s;
-  const double freedom = s.freedom;
-  double worst = 0.0;
-  constexpr double kFewest = 6.0;
-  for (double length = 1.0; length == 1.0 || duration > kFewest * length; length *= 2.0) {
-    const double squares = squares_of_blocks(left, length);
-    if (!(squares > 0.0)) return 1.0;
-    const double statistic = sum * sum / squares;
-    // Blocks that show the candidate, as if each showed as much.
-    const double blocks = all * all / std::max(squares_of_blocks(shown, length), 1e-300);
-    if (blocks < kFewest) {
-      if (length == 1.0) worst = chi_squared_tail(statistic, s.freedom);
-      continue;
-    }
-    worst = std::max(worst, f_tail(statistic * (blocks - 1.0) / (blocks * freedom), freedom,
-                                   blocks - 1.0));
-  }
-  return worst;
+  return squares > 0.0 ? sum * sum / squares : 0.0;
 }
 
 double ScoreTable::block_scatter(std::size_t a) const {
@@ -315,13 +261,13 @@ double ScoreTable::block_scatter(std::size_t a) const {
                    Eigen::MatrixXd::Identity(n, n).col(signed_index(ranges_[a].first)))
           .col(0);
   double rows = 0.0;
-  const std::vector<Part> parts = parts_in_time(all_.innovations, [&](std::size_t i) {
+  const double blocks = squares_of_seconds(all_.innovations, [&](std::size_t i) {
     const double* row = all_.innovations.row(i);
     const double moves = weights.dot(Eigen::Map<const Eigen::VectorXd>(row + 1, n));
     rows += moves * moves;
     return moves * row[0];
   });
-  return rows > 0.0 ? std::sqrt(squares_of_blocks(parts, 1.0) / rows) : 1.0;
+  return rows > 0.0 ? std::sqrt(blocks / rows) : 1.0;
 }
 
 }  // namespace roadbook

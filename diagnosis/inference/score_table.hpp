@@ -36,10 +36,9 @@ class ScoreTable {
   /// Share of accepted cause a's first column, squared, that candidate c's columns make up; 1 where
   /// the cause is a special case of the candidate.
   [[nodiscard]] double made_up(std::size_t c, std::size_t a) const;
-  /// P-value of candidate c by the scatter that blocks of the drive have once the candidate is
-  /// fitted, in place of the model's own noise: large where residuals are correlated. The worst of
-  /// blocks of 1, 2, 4, ... s. Of groups, along their own best direction.
-  [[nodiscard]] double robust_p(std::size_t c) const;
+  /// T with the scatter that 1 s blocks have once the candidate is fitted, in place of the model's
+  /// own noise: small where residuals are correlated. Of groups, along their own best direction.
+  [[nodiscard]] double robust_statistic(std::size_t c) const;
   /// Standard error of accepted cause `a`'s first size by the scatter of 1 s blocks over that of
   /// independent rows: more than 1 where rows scatter more, or go together, where the cause shows.
   [[nodiscard]] double block_scatter(std::size_t a) const;

@@ -9,6 +9,7 @@
 #include "diagnosis/inference/cause_evidence.hpp"
 #include "diagnosis/inference/competing_terms.hpp"
 #include "diagnosis/inference/lack_of_fit.hpp"
+#include "diagnosis/inference/lasting_errors.hpp"
 #include "diagnosis/inference/shortlist.hpp"
 
 namespace roadbook {
@@ -24,6 +25,7 @@ namespace {
 //   5. tidy:    among equally good effects those of the smallest sizes (prefer_smallest_sizes), and
 //               a generic effect instead of catalogued ones that only imitate it
 //               (prefer_generic_terms), then prune again, until nothing changes.
+//   6. doubt:   effects that errors of the reference that last explain as well.
 //
 // docs/design/diagnosis_method.md explains each step.
 class Search {
@@ -51,6 +53,7 @@ class Search {
       before = model_.accepted.size();
       prune_effects();
     }
+    drop_what_lasting_errors_show();
     apply_decisions();
     return conclude();
   }
@@ -265,6 +268,35 @@ class Search {
     }
   }
 
+  [[nodiscard]] std::optional<Innovations> where_errors_last() const {
+    const std::vector<std::size_t> channels = problem_.channels_of_reference();
+    if (channels.empty() || model_.accepted.empty()) return std::nullopt;
+    return without_autocorrelation(problem_.project(model_, {}), channels);
+  }
+
+  // Removes effects that are not significant once errors may last. Only what remains when every
+  // effect is fitted says whether they do.
+  void drop_what_lasting_errors_show() {
+    while (!model_.accepted.empty()) {
+      const auto white = where_errors_last();
+      if (!white) return;
+      double most = options_.max_p;
+      std::size_t at = model_.accepted.size();
+      for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
+        const double p = size_by_blocks(model_, *white, a).p * table().tests();
+        if (p > most) {
+          most = p;
+          at = a;
+        }
+      }
+      if (at == model_.accepted.size()) return;
+      CauseModel model = model_;
+      drop(model, at);
+      fit(model, 3);
+      set_model(std::move(model));
+    }
+  }
+
   static void drop_name(SearchResult& result, const std::string& name) {
     std::erase(result.not_observable, name);
     std::erase_if(result.hidden, [&](const HiddenEffect& h) { return h.name == name; });
@@ -274,12 +306,14 @@ class Search {
     SearchResult result;
     const ScoreTable& table = this->table();
     const bool white = is_white(table, problem_.channels());
+    const auto lasting = where_errors_last();
     for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
       result.verdicts.push_back(judge_effect(model_, table, a, options_.confounded_loss, white));
       AcceptedEffect& v = result.verdicts.back();
       if (problem_.gains_need_refit()) v.gain = gain_against_refit(problem_, table, model_, a);
       v.sigma = std::max(v.sigma, profile_sigma(problem_, model_, a));
       if (problem_.intervals_of_blocks()) v.sigma *= std::max(1.0, table.block_scatter(a));
+      if (lasting) v.sigma = std::max(v.sigma, size_by_blocks(model_, *lasting, a).sigma);
       add_refitted(problem_, model_, table, a, options_.confounded_loss, v);
       for (const std::size_t c : like_covariates(model_, table, a, options_.replacement_lead))
         v.covariates.push_back(table.candidates()[c].covariate);

@@ -1,3 +1,4 @@
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -60,6 +61,7 @@ struct PoseMoment {
   double heading = 0.0;
   double speed = 0.0;
   double yaw_rate = 0.0;
+  double sideways = 0.0;  // speed [m/s]
 };
 
 // Lines through the poses of one run, at moments that ascend; three poses at least where the run
@@ -79,7 +81,8 @@ class RunLines {
     const Local y = line([](const PoseSample& p) { return p.y; });
     const Local psi = line([](const PoseSample& p) { return p.heading; });
     PoseMoment m{x.value, y.value, psi.value,
-                 x.slope * std::cos(psi.value) + y.slope * std::sin(psi.value), psi.slope};
+                 x.slope * std::cos(psi.value) + y.slope * std::sin(psi.value), psi.slope,
+                 y.slope * std::cos(psi.value) - x.slope * std::sin(psi.value)};
     // One or two poses alone in a gap have no slopes worth the name.
     if (is_short()) {
       m.speed = reckoned_speed(obs_, t).value_or(m.speed);
@@ -198,6 +201,32 @@ PoseLines lines_of(const std::vector<PoseSample>& poses) {
           std::cbrt(12.0 * step * of_positions * of_positions) > kLong};
 }
 
+// Scatter of the speed at which the lines slide sideways [m/s]. Wheels roll forwards: but for what
+// grows with speed and turn rate (a turned or shifted reference point), this is error of the poses,
+// also of errors that last and so hide in the scatter from pose to pose.
+double sideways_scatter(const Observations& obs, const std::vector<PoseRun>& runs, double window_s) {
+  std::vector<Eigen::Vector3d> rows;  // speed, turn rate, sideways speed
+  for (const PoseRun& run : runs) {
+    RunLines lines(obs, run, window_s);
+    if (lines.is_short()) continue;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      const double t = obs.poses[i].t_s;
+      if (t < obs.poses[run.begin].t_s + 0.5 * window_s ||
+          t > obs.poses[run.end - 1].t_s - 0.5 * window_s)
+        continue;
+      const PoseMoment m = lines.at(t);
+      rows.emplace_back(m.speed, m.yaw_rate, m.sideways);
+    }
+  }
+  if (rows.size() < 20) return 0.0;
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& row : rows) products += row * row.transpose();
+  const Eigen::Matrix2d A = products.topLeftCorner<2, 2>() + 1e-9 * Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d b = products.topRightCorner<2, 1>();
+  const double left = products(2, 2) - b.dot(A.ldlt().solve(b));
+  return std::sqrt(std::max(left, 0.0) / static_cast<double>(rows.size()));
+}
+
 }  // namespace
 
 Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
@@ -207,14 +236,19 @@ Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
   const double to = obs.poses.back().t_s + std::max(0.0, late_s) + 2.0 * obs.step_s;
   const auto knots = static_cast<std::size_t>(std::ceil((to - from) / obs.step_s)) + 1;
   Trajectory trajectory(from, obs.step_s, std::max<std::size_t>(knots, 3));
+  const std::vector<PoseRun> runs = runs_of(obs.poses);
   // Without measured headings, the scatter of such poses hides the course.
-  if (!obs.poses_have_heading && pose_lines.too_rough &&
-      lay_way_on_positions(obs, pose_lines.scatter_m, trajectory)) {
+  double rough_m = !obs.poses_have_heading && pose_lines.too_rough ? pose_lines.scatter_m : 0.0;
+  if (obs.poses_have_heading) {
+    constexpr double kMostSideways = 0.1;  // [m/s]
+    const double sideways = sideways_scatter(obs, runs, pose_lines.window_s);
+    if (sideways > kMostSideways) rough_m = 3.0 * sideways * pose_lines.window_s;
+  }
+  if (rough_m > 0.0 && lay_way_on_positions(obs, rough_m, trajectory)) {
     trajectory.integrate();
     trajectory.begin_at(from - late_s);
     return trajectory;
   }
-  const std::vector<PoseRun> runs = runs_of(obs.poses);
   std::size_t j = 0;
   double left_s = 0.0;
   PoseMoment left;  // the last of the run before

@@ -193,6 +193,12 @@ std::vector<NoiseCause> MotionProblem::noise_causes(const CauseModel& model) con
   return causes;
 }
 
+std::vector<std::size_t> MotionProblem::channels_of_reference() const {
+  if (obs_.poses_of_map) return {};
+  return {index_of(Channel::kPoseAlong), index_of(Channel::kPoseAcross),
+          index_of(Channel::kPoseHeading)};
+}
+
 std::string MotionProblem::note(const Accepted& cause) const {
   const Candidate& c = cause.candidate;
   if (c.kind != CandidateKind::kPlace) return {};

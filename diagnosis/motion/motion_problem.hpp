@@ -48,6 +48,8 @@ class MotionProblem final : public CauseProblem {
                                       const CauseModel& extended,
                                       const Candidate& cause) const override;
 
+  /// Poses, unless they are a map's, whose errors the nominal model allows for.
+  [[nodiscard]] std::vector<std::size_t> channels_of_reference() const override;
   /// Clocks shift readings along a trajectory that is not straight.
   [[nodiscard]] bool gains_need_refit() const override { return true; }
 

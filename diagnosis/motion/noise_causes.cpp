@@ -13,6 +13,8 @@
 namespace roadbook {
 namespace {
 
+constexpr double kSureOfCorrelation = 1e-6;
+
 // Lag-one correlation of the innovations, all pose channels together.
 NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels, double known) {
   double n = 0.0, r = 0.0, of_channels = 0.0;
@@ -49,6 +51,38 @@ NoiseCause pose_outliers(const std::vector<VarianceSample>& looks, double known)
   return with_sigma(c, sigma, known);
 }
 
+// Each channel by its own scale: where correlated errors were allowed for, scales differ.
+std::vector<VarianceSample> of_equal_scale(
+    const std::array<std::vector<VarianceSample>, 3>& by_channel) {
+  std::vector<VarianceSample> looks;
+  for (const auto& of : by_channel) {
+    std::vector<double> squares;
+    for (const VarianceSample& l : of) squares.push_back(l.square);
+    if (squares.size() < 20) continue;
+    const double scale = std::max(median(squares) / median_share(1.0), 1e-300);
+    for (VarianceSample l : of) {
+      l.square /= scale;
+      looks.push_back(l);
+    }
+  }
+  return looks;
+}
+
+// Squares of what the innovation before does not predict, in place of those of the innovations.
+void keep_steps(const std::vector<double>& e, std::vector<VarianceSample>& looks) {
+  double lagged = 0.0, squares = 0.0;
+  for (std::size_t i = 1; i < e.size(); ++i) {
+    lagged += e[i] * e[i - 1];
+    squares += e[i] * e[i];
+  }
+  const double r = std::clamp(lagged / std::max(squares, 1e-300), 0.0, 1.0);
+  for (std::size_t i = e.size(); i-- > 1;) {
+    const double grown = std::sqrt(looks[i].square / std::max(e[i] * e[i], 1e-300));
+    looks[i].square = std::pow(grown * (e[i] - r * e[i - 1]), 2);
+  }
+  if (!looks.empty()) looks.erase(looks.begin());
+}
+
 void look_into_poses(const Observations& obs,
                      const MotionModel& model,
                      const Trajectory& smooth,
@@ -68,25 +102,27 @@ void look_into_poses(const Observations& obs,
     by_channel[c].push_back({e * e, 1.0, std::abs(s.speed), std::abs(s.yaw_rate)});
     channels[c].push_back(in.row(i)[0]);
   }
-  // Each channel by its own scale: where correlated errors were allowed for, scales differ.
-  std::vector<VarianceSample> looks;
-  for (const auto& of : by_channel) {
-    std::vector<double> squares;
-    for (const VarianceSample& l : of) squares.push_back(l.square);
-    if (squares.size() < 20) continue;
-    const double scale = std::max(median(squares) / median_share(1.0), 1e-300);
-    for (VarianceSample l : of) {
-      l.square /= scale;
-      looks.push_back(l);
-    }
-  }
+  const NoiseCause correlation = pose_correlation(channels, known.correlation);
+  std::vector<VarianceSample> looks = of_equal_scale(by_channel);
   if (looks.size() < 50) return;
   const VarianceSlopes slopes = variance_slopes("poses", looks, known);
-  all.push_back(slopes.by_speed);
-  all.push_back(slopes.by_turn);
   for (VarianceSample& l : looks) l = slopes.without(l);
-  all.push_back(pose_outliers(looks, known.outliers));
-  all.push_back(pose_correlation(channels, known.correlation));
+  std::array<NoiseCause, 3> found{slopes.by_speed, slopes.by_turn,
+                                  pose_outliers(looks, known.outliers)};
+  // A few long swings of errors that last look like scatter of another kind: what is there shows in
+  // the steps from pose to pose as well.
+  if (correlation.z > 0.0 && correlation.p < kSureOfCorrelation) {
+    for (std::size_t c = 0; c < 3; ++c) keep_steps(channels[c], by_channel[c]);
+    looks = of_equal_scale(by_channel);
+    const VarianceSlopes of_steps = variance_slopes("poses", looks, known);
+    for (VarianceSample& l : looks) l = of_steps.without(l);
+    const std::array<NoiseCause, 3> again{of_steps.by_speed, of_steps.by_turn,
+                                          pose_outliers(looks, known.outliers)};
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (std::abs(again[i].z) < std::abs(found[i].z)) found[i] = again[i];
+  }
+  all.insert(all.end(), found.begin(), found.end());
+  all.push_back(correlation);
 }
 
 }  // namespace
