@@ -57,14 +57,40 @@ std::vector<std::vector<std::size_t>> series_of(const Innovations& in,
   return series;
 }
 
-// Autocorrelation of neighbours; 0 where it is not significant.
-double neighbour_correlation(const std::vector<double>& e) {
+// Errors of two parts: a share of their variance lasts (first-order Gauss-Markov), the rest is white.
+struct Lasting {
+  double keep = 0.0;    // of the lasting part, from row to row
+  double repaid = 0.0;  // of the last row's own error: what its white part had taken away
+};
+
+double autocorrelation(const std::vector<double>& e, std::size_t lag) {
+  const auto last = e.end() - static_cast<std::ptrdiff_t>(lag);
+  return std::inner_product(e.begin(), last, e.begin() + static_cast<std::ptrdiff_t>(lag), 0.0) /
+         std::max(std::inner_product(e.begin(), e.end(), e.begin(), 0.0), 1e-300);
+}
+
+// No value where neighbours do not correlate significantly.
+std::optional<Lasting> lasting_part(const std::vector<double>& e) {
   constexpr double kSignificant = 5.0;
-  if (e.size() < 50) return 0.0;
-  const double lagged = std::inner_product(e.begin() + 1, e.end(), e.begin(), 0.0);
-  const double squares = std::inner_product(e.begin(), e.end(), e.begin(), 0.0);
-  const double r = lagged / std::max(squares, 1e-300);
-  return r * std::sqrt(static_cast<double>(e.size())) > kSignificant ? std::min(r, 0.999) : 0.0;
+  constexpr double kLongest = 0.999;
+  if (e.size() < 50) return std::nullopt;
+  const double first = autocorrelation(e, 1);
+  if (first * std::sqrt(static_cast<double>(e.size())) <= kSignificant) return std::nullopt;
+  // Autocorrelations are share * keep^lag: from the first to where they have fallen to a half.
+  std::size_t lag = 2;
+  double last = autocorrelation(e, lag);
+  while (last > 0.5 * first && 10 * (lag + 1) < e.size()) last = autocorrelation(e, ++lag);
+  const double fallen = std::max(last, 0.0) / first;
+  const double keep =
+      std::clamp(std::pow(fallen, 1.0 / static_cast<double>(lag - 1)), first, kLongest);
+  // Differences e - keep * e_before are a moving average of one step (ARMA(1, 1)).
+  const double share = std::min(first / keep, 1.0);
+  const double square = share * (1.0 - keep * keep) + (1.0 - share) * (1.0 + keep * keep);
+  const double ratio = (1.0 - share) * keep / square;  // repaid / (1 + repaid^2)
+  const double repaid =
+      ratio > 1e-9 ? (1.0 - std::sqrt(std::max(1.0 - 4.0 * ratio * ratio, 0.0))) / (2.0 * ratio)
+                   : 0.0;
+  return Lasting{keep, std::min(repaid, kLongest)};
 }
 
 }  // namespace
@@ -81,25 +107,28 @@ std::optional<Innovations> without_autocorrelation(const Projection& projection,
       e.push_back(in.row(i)[0] - columns_of(in, i, n).dot(fit.step));
     for (std::size_t k = 1; k < rows.size(); ++k)
       steps.push_back(in.of[rows[k]].t_s - in.of[rows[k - 1]].t_s);
-    const double r = neighbour_correlation(e);
-    if (r == 0.0) continue;
+    const auto part = lasting_part(e);
+    if (!part) continue;
     if (!white) white = in;
     const double usual = std::max(median(steps), 1e-9);
-    std::vector<double> keep(rows.size(), 0.0);
-    double squares = 0.0;
+    const auto row = [&](std::size_t k) { return white->values.data() + rows[k] * in.sides; };
+    double squares = 0.0, own = e[0];
     for (std::size_t k = 1; k < rows.size(); ++k) {
-      keep[k] = std::pow(r, std::max(steps[k - 1] / usual, 0.0));
-      squares += std::pow(e[k] - keep[k] * e[k - 1], 2) / (1.0 - keep[k] * keep[k]);
-    }
-    // What is left has the scatter 1 again.
-    const double scale = std::sqrt(squares / static_cast<double>(rows.size() - 1));
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      const double own = scale * std::sqrt(1.0 - keep[k] * keep[k]);
+      const double keep = std::pow(part->keep, std::max(steps[k - 1] / usual, 0.0));
+      own = e[k] - keep * e[k - 1] + part->repaid * own;
+      squares += own * own;
       const double* now = in.row(rows[k]);
-      const double* before = in.row(rows[k > 0 ? k - 1 : 0]);
-      double* changed = white->values.data() + rows[k] * in.sides;
-      for (std::size_t s = 0; s < in.sides; ++s) changed[s] = (now[s] - keep[k] * before[s]) / own;
+      const double* before = in.row(rows[k - 1]);
+      for (std::size_t s = 0; s < in.sides; ++s)
+        row(k)[s] = now[s] - keep * before[s] + part->repaid * row(k - 1)[s];
     }
+    // What is left has the scatter 1 again; the first row is of the whole errors.
+    const double scale = std::sqrt(squares / static_cast<double>(rows.size() - 1));
+    const double whole = std::sqrt(std::inner_product(e.begin(), e.end(), e.begin(), 0.0) /
+                                   static_cast<double>(e.size()));
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      for (std::size_t s = 0; s < in.sides; ++s)
+        row(k)[s] /= std::max(k == 0 ? whole : scale, 1e-300);
   }
   return white;
 }

@@ -12,9 +12,10 @@ namespace roadbook {
 // errors that remain when every accepted cause is fitted.
 
 /// Innovations without the autocorrelation of their channels' errors: of each of `channels` where
-/// neighbouring residuals correlate significantly, every row less its prediction by the row before
-/// (Cochrane and Orcutt 1949). Errors of a first-order Gauss-Markov process become white by this.
-/// No value where no channel's errors last.
+/// neighbouring residuals correlate significantly, every row less its prediction by the rows before
+/// (generalised least squares as of Cochrane and Orcutt 1949). Errors that are the sum of a
+/// first-order Gauss-Markov process and of white noise become white by this. No value where no
+/// channel's errors last.
 [[nodiscard]] std::optional<Innovations> without_autocorrelation(
     const Projection& projection, const std::vector<std::size_t>& channels);
 

@@ -15,6 +15,8 @@
 namespace roadbook {
 namespace {
 
+constexpr double kMostLastingP = 0.05;  // after correction for the number of candidates
+
 // Stepwise model selection, with each candidate model refitted in full:
 //
 //   1. add:     the best shortlisted effect, until none has enough evidence (add_best_effect);
@@ -53,7 +55,7 @@ class Search {
       before = model_.accepted.size();
       prune_effects();
     }
-    drop_what_lasting_errors_show();
+    doubt_what_lasting_errors_show();
     apply_decisions();
     return conclude();
   }
@@ -274,26 +276,40 @@ class Search {
     return without_autocorrelation(problem_.project(model_, {}), channels);
   }
 
-  // Removes effects that are not significant once errors may last. Only what remains when every
-  // effect is fitted says whether they do.
-  void drop_what_lasting_errors_show() {
-    while (!model_.accepted.empty()) {
-      const auto white = where_errors_last();
-      if (!white) return;
-      double most = options_.max_p;
-      std::size_t at = model_.accepted.size();
-      for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
-        const double p = size_by_blocks(model_, *white, a).p * table().tests();
-        if (p > most) {
+  // P-values of the accepted effects, corrected, where errors may last; none where they do not.
+  std::vector<double> p_where_errors_last() {
+    std::vector<double> p;
+    if (const auto white = where_errors_last())
+      for (std::size_t a = 0; a < model_.accepted.size(); ++a)
+        p.push_back(size_by_blocks(model_, *white, a).p * table().tests());
+    return p;
+  }
+
+  // Removes catalogued effects that are not significant once errors may last, neither beside all
+  // others nor beside those that stay. Only what remains when every effect is fitted says whether
+  // errors last. Generic effects of this kind stay in the model, so that no other effect absorbs
+  // their part of the data, but are no findings.
+  void doubt_what_lasting_errors_show() {
+    const auto is_name = [&](std::size_t a) {
+      return model_.accepted[a].candidate.kind != CandidateKind::kGrammar;
+    };
+    std::vector<double> first = p_where_errors_last();
+    std::vector<double> now = first;
+    for (;;) {
+      double most = kMostLastingP;
+      std::size_t worst = now.size();
+      for (std::size_t a = 0; a < now.size(); ++a)
+        if (const double p = std::min(now[a], first[a]); is_name(a) && p > most) {
           most = p;
-          at = a;
+          worst = a;
         }
-      }
-      if (at == model_.accepted.size()) return;
+      if (worst == now.size()) return;
       CauseModel model = model_;
-      drop(model, at);
+      drop(model, worst);
+      first.erase(first.begin() + static_cast<std::ptrdiff_t>(worst));
       fit(model, 3);
       set_model(std::move(model));
+      now = p_where_errors_last();
     }
   }
 
@@ -313,7 +329,12 @@ class Search {
       if (problem_.gains_need_refit()) v.gain = gain_against_refit(problem_, table, model_, a);
       v.sigma = std::max(v.sigma, profile_sigma(problem_, model_, a));
       if (problem_.intervals_of_blocks()) v.sigma *= std::max(1.0, table.block_scatter(a));
-      if (lasting) v.sigma = std::max(v.sigma, size_by_blocks(model_, *lasting, a).sigma);
+      if (lasting) {
+        const SizeByBlocks there = size_by_blocks(model_, *lasting, a);
+        v.sigma = std::max(v.sigma, there.sigma);
+        v.of_lasting_errors = v.cause.candidate.kind == CandidateKind::kGrammar &&
+                              there.p * table.tests() > kMostLastingP;
+      }
       add_refitted(problem_, model_, table, a, options_.confounded_loss, v);
       for (const std::size_t c : like_covariates(model_, table, a, options_.replacement_lead))
         v.covariates.push_back(table.candidates()[c].covariate);

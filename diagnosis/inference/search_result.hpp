@@ -41,6 +41,8 @@ struct AcceptedEffect {
   std::vector<std::string> covariates;   ///< of a generic effect: those that fit as well
   std::vector<std::string> inseparable;  ///< confounded effects: they explain nearly as much
   std::vector<double> instead;           ///< size that each would have
+  /// A generic effect that errors of the reference that last explain as well.
+  bool of_lasting_errors = false;
 };
 
 /// A sign that an accepted effect is not the true cause, although it explains much.

@@ -194,9 +194,14 @@ std::vector<NoiseCause> MotionProblem::noise_causes(const CauseModel& model) con
 }
 
 std::vector<std::size_t> MotionProblem::channels_of_reference() const {
-  if (obs_.poses_of_map) return {};
-  return {index_of(Channel::kPoseAlong), index_of(Channel::kPoseAcross),
-          index_of(Channel::kPoseHeading)};
+  std::vector<std::size_t> channels;
+  if (obs_.poses_of_map) return channels;
+  // At their least noise, neighbours correlate because the model's noise is the larger one.
+  const auto& sigma = nominal_.noise.pose;
+  if (sigma[0] > MotionNoise::kLeastPosition) channels.push_back(index_of(Channel::kPoseAlong));
+  if (sigma[1] > MotionNoise::kLeastPosition) channels.push_back(index_of(Channel::kPoseAcross));
+  if (sigma[2] > MotionNoise::kLeastHeading) channels.push_back(index_of(Channel::kPoseHeading));
+  return channels;
 }
 
 std::string MotionProblem::note(const Accepted& cause) const {
