@@ -173,7 +173,8 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   for (const AcceptedEffect& v : result.verdicts) {
     const bool term = v.cause.candidate.kind == CandidateKind::kGrammar;
     // With the later causes in the model, this term predicts worse than its absence, or the errors
-    // of the reference last. It is not a finding. It stays in the model so that no other effect is blamed.
+    // of the reference last. It is not a finding. It stays in the model so that no other effect is
+    // blamed.
     if (term && (v.gain.total < 0.0 || v.of_lasting_errors)) continue;
     const EvidencePlot plot = problem.evidence(nominal, result.model, v.cause.candidate);
     if (const std::string why = term ? "" : no_answer(v); !why.empty()) {

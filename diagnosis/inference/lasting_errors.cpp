@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/median.hpp"
-#include "diagnosis/numerics/block_scatter.hpp"
 #include "diagnosis/inference/score_table.hpp"
+#include "diagnosis/numerics/block_scatter.hpp"
 
 namespace roadbook {
 namespace {
@@ -49,15 +49,15 @@ std::vector<std::vector<std::size_t>> series_of(const Innovations& in,
       all[{in.of[i].drive, in.of[i].channel}].push_back(i);
   std::vector<std::vector<std::size_t>> series;
   for (auto& [key, rows] : all) {
-    std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
-      return in.of[a].t_s < in.of[b].t_s;
-    });
+    std::stable_sort(rows.begin(), rows.end(),
+                     [&](std::size_t a, std::size_t b) { return in.of[a].t_s < in.of[b].t_s; });
     series.push_back(std::move(rows));
   }
   return series;
 }
 
-// Errors of two parts: a share of their variance lasts (first-order Gauss-Markov), the rest is white.
+// Errors of two parts: a share of their variance lasts (first-order Gauss-Markov), the rest is
+// white.
 struct Lasting {
   double keep = 0.0;    // of the lasting part, from row to row
   double repaid = 0.0;  // of the last row's own error: what its white part had taken away
@@ -103,8 +103,7 @@ std::optional<Innovations> without_autocorrelation(const Projection& projection,
   std::optional<Innovations> white;
   for (const std::vector<std::size_t>& rows : series_of(in, channels)) {
     std::vector<double> e, steps;
-    for (const std::size_t i : rows)
-      e.push_back(in.row(i)[0] - columns_of(in, i, n).dot(fit.step));
+    for (const std::size_t i : rows) e.push_back(in.row(i)[0] - columns_of(in, i, n).dot(fit.step));
     for (std::size_t k = 1; k < rows.size(); ++k)
       steps.push_back(in.of[rows[k]].t_s - in.of[rows[k - 1]].t_s);
     const auto part = lasting_part(e);

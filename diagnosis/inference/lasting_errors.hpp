@@ -24,8 +24,8 @@ struct SizeByBlocks {
   double sigma = 0.0;  ///< of its first size in `model`
 };
 
-/// Accepted cause `a` of `model`, all accepted sizes fitted again to these innovations. P-value: the
-/// larger of that for independent rows and of those by the scatter of blocks of 1, 2, 4, ... s
+/// Accepted cause `a` of `model`, all accepted sizes fitted again to these innovations. P-value:
+/// the larger of that for independent rows and of those by the scatter of blocks of 1, 2, 4, ... s
 /// (cluster-robust, F distribution). Standard error: that of the new fit, and how far the new fit
 /// moves the size.
 [[nodiscard]] SizeByBlocks size_by_blocks(const CauseModel& model,

@@ -80,9 +80,9 @@ class RunLines {
     const Local x = line([](const PoseSample& p) { return p.x; });
     const Local y = line([](const PoseSample& p) { return p.y; });
     const Local psi = line([](const PoseSample& p) { return p.heading; });
-    PoseMoment m{x.value, y.value, psi.value,
-                 x.slope * std::cos(psi.value) + y.slope * std::sin(psi.value), psi.slope,
-                 y.slope * std::cos(psi.value) - x.slope * std::sin(psi.value)};
+    PoseMoment m{x.value,   y.value,
+                 psi.value, x.slope * std::cos(psi.value) + y.slope * std::sin(psi.value),
+                 psi.slope, y.slope * std::cos(psi.value) - x.slope * std::sin(psi.value)};
     // One or two poses alone in a gap have no slopes worth the name.
     if (is_short()) {
       m.speed = reckoned_speed(obs_, t).value_or(m.speed);
@@ -204,7 +204,9 @@ PoseLines lines_of(const std::vector<PoseSample>& poses) {
 // Scatter of the speed at which the lines slide sideways [m/s]. Wheels roll forwards: but for what
 // grows with speed and turn rate (a turned or shifted reference point), this is error of the poses,
 // also of errors that last and so hide in the scatter from pose to pose.
-double sideways_scatter(const Observations& obs, const std::vector<PoseRun>& runs, double window_s) {
+double sideways_scatter(const Observations& obs,
+                        const std::vector<PoseRun>& runs,
+                        double window_s) {
   std::vector<Eigen::Vector3d> rows;  // speed, turn rate, sideways speed
   for (const PoseRun& run : runs) {
     RunLines lines(obs, run, window_s);

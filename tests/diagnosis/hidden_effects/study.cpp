@@ -162,8 +162,8 @@ void study_effects(std::size_t drives, std::uint64_t seed, int threads, const st
   print("all", all);
 }
 
-// One effect of the mean or of the gyro's noise together with errors of the poses that last `time_s`. The
-// correlation of the poses, which is there too, is no additional name.
+// One effect of the mean or of the gyro's noise together with errors of the poses that last
+// `time_s`. The correlation of the poses, which is there too, is no additional name.
 void study_lasting_effects(std::size_t drives,
                            std::uint64_t seed,
                            int threads,

@@ -70,9 +70,9 @@ TEST(LastingErrors, LeaveALargeCauseSure) {
 
 TEST(LastingErrors, AreNotFoundInWhiteOnes) { EXPECT_LE(share_of(0.5, 0.0).last, 0.005); }
 
-// Twelve seconds of one row each, two errors of one sign after two of the other. By seconds the sum's
-// square is 16 times their squares, by blocks of two 8 times, with 5 degrees of freedom: Student's t
-// at sqrt(8 * 5 / 6), two-sided (by numerical integration).
+// Twelve seconds of one row each, two errors of one sign after two of the other. By seconds the
+// sum's square is 16 times their squares, by blocks of two 8 times, with 5 degrees of freedom:
+// Student's t at sqrt(8 * 5 / 6), two-sided (by numerical integration).
 TEST(BlockScatter, IsTheWorstTailOfF) {
   std::vector<BlockPart> parts;
   for (int i = 0; i < 12; ++i) parts.push_back({1.1 * i, i % 4 < 2 ? 1.0 : -1.0, 1.0});
