@@ -1,5 +1,8 @@
 #include "workflows/map_drives.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "drive/vehicle_yaml.hpp"
 #include "exchange/layers/friction_layers.hpp"
 #include "mapping/pipeline/map_inputs.hpp"
@@ -10,6 +13,7 @@
 #include "semantics/labels/label_layers.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "semantics/labels/space_rows.hpp"
+#include "workflows/diagnosis/motion_doubts.hpp"
 #include "workflows/edits/edit_map.hpp"
 #include "workflows/edits/edit_record.hpp"
 #include "workflows/further_drives.hpp"
@@ -74,6 +78,24 @@ MapResult made_map(const MapRequest& request, const MapOptions& options, Message
   return result;
 }
 
+// Where a camera is in doubt, its errors are in the poses as well.
+bool doubts_a_camera(const std::vector<Problem>& warnings) {
+  return std::any_of(warnings.begin(), warnings.end(), [](const Problem& p) {
+    return std::filesystem::path(p.file).filename().string().starts_with("cam");
+  });
+}
+
+void warn_of_motion(const std::filesystem::path& file,
+                    const EffectSizes& model,
+                    MapResult& result) {
+  std::vector<Problem>& warnings = result.summary.warnings;
+  if (doubts_a_camera(warnings)) return;
+  const Map map = load_map(file);
+  for (const auto& folder : result.drives)
+    for (Problem& doubt : motion_doubts(map, Drive::open(folder), model))
+      warnings.push_back(std::move(doubt));
+}
+
 }  // namespace
 
 MapResult map_drives(const MapRequest& request, Messages& messages) {
@@ -112,6 +134,7 @@ MapResult map_drives(const MapRequest& request, Messages& messages) {
       result.summary.warnings.insert(result.summary.warnings.end(), doubts.begin(), doubts.end());
     }
   if (lost_places) result.summary.warnings.push_back(*lost_places);
+  warn_of_motion(request.map, options.model, result);
   result.dropped = dropped_work(result.summary.dropped, request.map);
   return result;
 }
