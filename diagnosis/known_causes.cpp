@@ -9,7 +9,7 @@
 #include "diagnosis/inference/extended_model.hpp"
 #include "diagnosis/inference/findings.hpp"
 #include "diagnosis/inference/score_table.hpp"
-#include "diagnosis/inference/size_interval.hpp"
+#include "diagnosis/numerics/size_interval.hpp"
 
 namespace roadbook {
 namespace {

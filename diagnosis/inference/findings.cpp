@@ -8,7 +8,7 @@
 #include "diagnosis/inference/extended_model.hpp"
 #include "diagnosis/inference/plausible_size.hpp"
 #include "diagnosis/inference/search.hpp"
-#include "diagnosis/inference/size_interval.hpp"
+#include "diagnosis/numerics/size_interval.hpp"
 
 namespace roadbook {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/cell_grid.hpp"
 #include "diagnosis/inference/score_table.hpp"
-#include "diagnosis/inference/size_interval.hpp"
+#include "diagnosis/numerics/size_interval.hpp"
 
 namespace roadbook {
 namespace {

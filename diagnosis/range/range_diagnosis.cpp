@@ -6,7 +6,7 @@
 
 #include "diagnosis/inference/extended_model.hpp"
 #include "diagnosis/inference/score_table.hpp"
-#include "diagnosis/inference/size_interval.hpp"
+#include "diagnosis/numerics/size_interval.hpp"
 #include "diagnosis/range/fitted_mixture.hpp"
 #include "diagnosis/range/range_noise.hpp"
 #include "diagnosis/range/range_noise_sizes.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/random.hpp"
-#include "diagnosis/inference/size_interval.hpp"
+#include "diagnosis/numerics/size_interval.hpp"
 #include "diagnosis/range/range_noise.hpp"
 #include "sensors/stream_noise.hpp"
 

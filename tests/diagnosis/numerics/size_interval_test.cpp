@@ -1,4 +1,4 @@
-#include "diagnosis/inference/size_interval.hpp"
+#include "diagnosis/numerics/size_interval.hpp"
 
 #include <gtest/gtest.h>
 
