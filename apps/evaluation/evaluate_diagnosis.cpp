@@ -183,7 +183,11 @@ struct Tally {
       ++of.nulls;
       of.alarms += d.raises_alarm() ? 1 : 0;
     } else {
-      of.score.add(d);
+      // The correlation of the poses is there too: it is no other name.
+      StudiedDrive without = d;
+      std::erase_if(without.found.causes,
+                    [](const FoundCause& c) { return c.effect == "poses.correlation"; });
+      of.score.add(without);
       of.best_possible += best_power(d);
     }
   }

@@ -13,8 +13,6 @@
 namespace roadbook {
 namespace {
 
-constexpr double kSureOfCorrelation = 1e-6;
-
 // Lag-one correlation of the innovations, all pose channels together.
 NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels, double known) {
   double n = 0.0, r = 0.0, of_channels = 0.0;
@@ -68,19 +66,23 @@ std::vector<VarianceSample> of_equal_scale(
   return looks;
 }
 
-// Squares of what the innovation before does not predict, in place of those of the innovations.
-void keep_steps(const std::vector<double>& e, std::vector<VarianceSample>& looks) {
+// Where neighbours correlate: squares of what the innovation before does not predict, in place of
+// those of the innovations. False where they do not.
+bool keep_steps(const std::vector<double>& e, std::vector<VarianceSample>& looks) {
+  constexpr double kSignificant = 5.0;
   double lagged = 0.0, squares = 0.0;
   for (std::size_t i = 1; i < e.size(); ++i) {
     lagged += e[i] * e[i - 1];
     squares += e[i] * e[i];
   }
-  const double r = std::clamp(lagged / std::max(squares, 1e-300), 0.0, 1.0);
+  const double r = lagged / std::max(squares, 1e-300);
+  if (r * std::sqrt(static_cast<double>(e.size())) <= kSignificant) return false;
   for (std::size_t i = e.size(); i-- > 1;) {
     const double grown = std::sqrt(looks[i].square / std::max(e[i] * e[i], 1e-300));
     looks[i].square = std::pow(grown * (e[i] - r * e[i - 1]), 2);
   }
-  if (!looks.empty()) looks.erase(looks.begin());
+  looks.erase(looks.begin());
+  return true;
 }
 
 void look_into_poses(const Observations& obs,
@@ -111,8 +113,9 @@ void look_into_poses(const Observations& obs,
                                   pose_outliers(looks, known.outliers)};
   // A few long swings of errors that last look like scatter of another kind: what is there shows in
   // the steps from pose to pose as well.
-  if (correlation.z > 0.0 && correlation.p < kSureOfCorrelation) {
-    for (std::size_t c = 0; c < 3; ++c) keep_steps(channels[c], by_channel[c]);
+  bool last = false;
+  for (std::size_t c = 0; c < 3; ++c) last |= keep_steps(channels[c], by_channel[c]);
+  if (last) {
     looks = of_equal_scale(by_channel);
     const VarianceSlopes of_steps = variance_slopes("poses", looks, known);
     for (VarianceSample& l : looks) l = of_steps.without(l);
