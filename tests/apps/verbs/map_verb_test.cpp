@@ -101,24 +101,47 @@ std::string digest_of_map(const std::string& arguments, const fs::path& folder) 
   return nlohmann::json::parse(result.out).at("digest");
 }
 
-TEST(MapOfFurtherDrives, OfABatchIsTheOneOfAllDrives) {
-  const test::ScratchFolder folder;
-  for (const int visit : {0, 1}) simulate_visit(visit, folder.path());
-  const std::string all = digest_of_map("visit0 visit1 -m all.gpkg", folder.path());
-  EXPECT_NE(digest_of_map("visit0 -m place.gpkg", folder.path()), all);
-  fs::copy_file(folder.path() / "place.gpkg", folder.path() / "other_seed.gpkg");
-  EXPECT_EQ(digest_of_map("visit1 -m place.gpkg --batch", folder.path()), all);
-  EXPECT_EQ(digest_of_map("visit0 visit1 -m place.gpkg", folder.path()), all) << "built again";
-  EXPECT_EQ(digest_of_map("visit1 -m place.gpkg --replace", folder.path()),
-            digest_of_map("visit1 -m one.gpkg", folder.path()));
+// Drives of three visits, the map of the first one and the map of the first two. They are made once,
+// and each test may change its copies.
+class MapOfFurtherDrives : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    made_ = std::make_unique<test::ScratchFolder>();
+    for (const int visit : {0, 1, 2}) simulate_visit(visit, made_->path());
+    for (const char* arguments : {"visit0 -m place.gpkg", "visit0 visit1 -m all.gpkg"}) {
+      const auto result = test::run_command(
+          std::string("roadbook map ") + arguments + " -q --json", made_->path());
+      ASSERT_EQ(result.status, 0) << result.err;
+      built_ = nlohmann::json::parse(result.out);
+    }
+  }
+  static void TearDownTestSuite() { made_.reset(); }
+
+  void SetUp() override {
+    fs::copy(made_->path(), folder_.path(), fs::copy_options::recursive);
+  }
+
+  static inline std::unique_ptr<test::ScratchFolder> made_;
+  static inline nlohmann::json built_;  // the result of the map of two visits
+  const test::ScratchFolder folder_;
+};
+
+TEST_F(MapOfFurtherDrives, OfABatchIsTheOneOfAllDrives) {
+  const std::string all = built_.at("digest");
+  EXPECT_NE(load_meta(folder_.path() / "place.gpkg").digest, all);
+  fs::copy_file(folder_.path() / "place.gpkg", folder_.path() / "other_seed.gpkg");
+  EXPECT_EQ(digest_of_map("visit1 -m place.gpkg --batch", folder_.path()), all);
+  EXPECT_EQ(digest_of_map("visit0 visit1 -m place.gpkg", folder_.path()), all) << "built again";
+  EXPECT_EQ(digest_of_map("visit1 -m place.gpkg --replace", folder_.path()),
+            digest_of_map("visit1 -m one.gpkg", folder_.path()));
   // With another seed, the command builds the whole map with this seed and reports it.
   const auto seed =
-      test::run_command("roadbook map visit1 -m other_seed.gpkg --batch --seed 5", folder.path());
+      test::run_command("roadbook map visit1 -m other_seed.gpkg --batch --seed 5", folder_.path());
   EXPECT_EQ(seed.status, 0) << seed.err;
   EXPECT_NE(seed.err.find("options: got others than the map was made with"), std::string::npos)
       << seed.err;
   // The command refuses fewer drives than the map has, because they add none.
-  const auto fewer = test::run_command("roadbook map visit0 -m all.gpkg -q", folder.path());
+  const auto fewer = test::run_command("roadbook map visit0 -m all.gpkg -q", folder_.path());
   EXPECT_EQ(fewer.status, 2);
   EXPECT_NE(fewer.err.find("error: visit0: drive: got session visit0 of all.gpkg, want"),
             std::string::npos)
@@ -126,16 +149,13 @@ TEST(MapOfFurtherDrives, OfABatchIsTheOneOfAllDrives) {
 }
 
 // The recordings of earlier drives are gone, as in a car that keeps maps alone.
-TEST(MapOfFurtherDrives, IsExtendedWithoutItsRecordings) {
-  const test::ScratchFolder folder;
-  for (const int visit : {0, 1, 2}) simulate_visit(visit, folder.path());
+TEST_F(MapOfFurtherDrives, IsExtendedWithoutItsRecordings) {
   const auto run = [&](const std::string& arguments) {
     return test::run_command("roadbook map " + arguments + " -m place.gpkg -q --json",
-                             folder.path());
+                             folder_.path());
   };
-  ASSERT_EQ(run("visit0").status, 0);
-  fs::copy_file(folder.path() / "place.gpkg", folder.path() / "before.gpkg");
-  fs::rename(folder.path() / "visit0", folder.path() / "away");
+  fs::copy_file(folder_.path() / "place.gpkg", folder_.path() / "before.gpkg");
+  fs::rename(folder_.path() / "visit0", folder_.path() / "away");
   const auto both = run("visit1 visit2");
   ASSERT_EQ(both.status, 0) << both.err;
   const auto json = nlohmann::json::parse(both.out);
@@ -148,20 +168,20 @@ TEST(MapOfFurtherDrives, IsExtendedWithoutItsRecordings) {
     EXPECT_EQ(nlohmann::json::parse(done.out).at("unchanged"), true) << again;
   }
   // A command that was stopped after its first drive continues with the second.
-  fs::copy_file(folder.path() / "before.gpkg", folder.path() / "place.gpkg",
+  fs::copy_file(folder_.path() / "before.gpkg", folder_.path() / "place.gpkg",
                 fs::copy_options::overwrite_existing);
   ASSERT_EQ(run("visit1").status, 0);
   const auto rest = run("visit1 visit2");
   ASSERT_EQ(rest.status, 0) << rest.err;
   EXPECT_EQ(nlohmann::json::parse(rest.out).at("digest"), json.at("digest"));
-  EXPECT_EQ(test::run_command("roadbook check place.gpkg", folder.path()).status, 0);
+  EXPECT_EQ(test::run_command("roadbook check place.gpkg", folder_.path()).status, 0);
 
   const auto refused = [&](const std::string& arguments, int status, const std::string& line) {
-    const std::string before = test::read_text(folder.path() / "place.gpkg");
+    const std::string before = test::read_text(folder_.path() / "place.gpkg");
     const auto result = run(arguments);
     EXPECT_EQ(result.status, status) << arguments;
     EXPECT_NE(result.err.find(line), std::string::npos) << result.err;
-    EXPECT_TRUE(test::read_text(folder.path() / "place.gpkg") == before) << arguments;
+    EXPECT_TRUE(test::read_text(folder_.path() / "place.gpkg") == before) << arguments;
   };
   refused("visit1", 2, "visit1: drive: got session visit1 of place.gpkg, want drives that the map");
   refused("visit2 --batch", 2, "drive of session visit0: got no such folder");
@@ -172,15 +192,13 @@ TEST(MapOfFurtherDrives, IsExtendedWithoutItsRecordings) {
 }
 
 // Both visits are of one simulated place, so one alignment compares both with the truth.
-TEST(MapOfFurtherDrives, IsComparedWithTheTruthOfAllTogether) {
-  const test::ScratchFolder folder;
-  for (const int visit : {0, 1}) simulate_visit(visit, folder.path());
+TEST_F(MapOfFurtherDrives, IsComparedWithTheTruthOfAllTogether) {
   const auto json_of = [&](const std::string& arguments) {
-    const auto result = test::run_command("roadbook " + arguments + " -q --json", folder.path());
+    const auto result = test::run_command("roadbook " + arguments + " -q --json", folder_.path());
     EXPECT_EQ(result.status, 0) << result.err;
     return nlohmann::json::parse(result.out);
   };
-  const auto built = json_of("map visit0 visit1 -m place.gpkg");
+  const nlohmann::json& built = built_;
   EXPECT_LT(built.at("truth").at("ate_median_m"), 0.05);
   ASSERT_EQ(built.at("truth_sessions").size(), 2U);
   for (const auto& session : built.at("truth_sessions")) {
@@ -188,18 +206,18 @@ TEST(MapOfFurtherDrives, IsComparedWithTheTruthOfAllTogether) {
     EXPECT_LT(session.at("offset").at("shift_m"), 0.05) << session;
     EXPECT_LT(std::abs(session.at("offset").at("heading_rad").get<double>()), 0.01) << session;
   }
-  const auto again = json_of("map visit0 visit1 -m place.gpkg");
+  const auto again = json_of("map visit0 visit1 -m all.gpkg");
   EXPECT_EQ(again.at("truth_sessions"), built.at("truth_sessions"));
-  const auto report = json_of("report -m place.gpkg -o report.html");
+  const auto report = json_of("report -m all.gpkg -o report.html");
   EXPECT_EQ(report.at("truth_together").at("ate_median_m"), built.at("truth").at("ate_median_m"));
   for (std::size_t s = 0; s < 2; ++s)
     EXPECT_EQ(report.at("truth").at(s).at("offset"), built.at("truth_sessions").at(s).at("offset"));
-  EXPECT_NE(test::read_text(folder.path() / "report.html").find("One alignment of all sessions"),
+  EXPECT_NE(test::read_text(folder_.path() / "report.html").find("One alignment of all sessions"),
             std::string::npos);
 
   // Recorded references have no common world: each drive has its own error, all together none.
   for (const std::string visit : {"visit0", "visit1"})
-    fs::remove_all(folder.path() / visit / "truth");
+    fs::remove_all(folder_.path() / visit / "truth");
   const auto recorded = json_of("map visit0 visit1 -m recorded.gpkg");
   EXPECT_TRUE(recorded.at("truth").is_null()) << recorded.at("truth");
   for (const auto& session : recorded.at("truth_sessions")) {
@@ -208,16 +226,26 @@ TEST(MapOfFurtherDrives, IsComparedWithTheTruthOfAllTogether) {
   }
 }
 
-// A finished map with an overhead image and with another program's table.
+// A finished map with an overhead image and with another program's table. It is made once, and each
+// test may change its copy.
 class MapGivenAgain : public ::testing::Test {
  protected:
-  void SetUp() override {
-    simulate_visit(0, folder_.path());
-    (void)result_of("map visit0 -m place.gpkg");
-    (void)result_of("overhead -m place.gpkg --resolution-m 0.05");
-    MapUpdate update(map_);
+  static void SetUpTestSuite() {
+    made_ = std::make_unique<test::ScratchFolder>();
+    simulate_visit(0, made_->path());
+    for (const char* command : {"roadbook map visit0 -m place.gpkg -q",
+                                "roadbook overhead -m place.gpkg --resolution-m 0.05 -q"}) {
+      const auto result = test::run_command(command, made_->path());
+      ASSERT_EQ(result.status, 0) << command << ": " << result.err;
+    }
+    MapUpdate update(made_->path() / "place.gpkg");
     update.write_table({"notes", {{"text", FieldType::kText}}, {{std::string("mine")}}});
     update.commit();
+  }
+  static void TearDownTestSuite() { made_.reset(); }
+
+  void SetUp() override {
+    fs::copy(made_->path(), folder_.path(), fs::copy_options::recursive);
   }
 
   nlohmann::json result_of(const std::string& arguments) {
@@ -235,6 +263,7 @@ class MapGivenAgain : public ::testing::Test {
   }
   [[nodiscard]] bool has(const std::string& layer) const { return MapLayers(map_).has(layer); }
 
+  static inline std::unique_ptr<test::ScratchFolder> made_;
   const test::ScratchFolder folder_;
   const fs::path map_ = folder_.path() / "place.gpkg";
   std::string err_;
