@@ -97,7 +97,8 @@ class Server {
     this.ended = new Promise((done) => this.process.on('exit', (status) => done(status)));
     let text = '';
     this.process.stdout.on('data', (bytes) => (text += bytes));
-    await until(() => text.includes('token='), 'the server starts');
+    // Loading the program takes long on a busy machine with a cold disk.
+    await until(() => text.includes('token='), 'the server starts', 120000);
     this.address = text.match(/http:\S+/)[0];
   }
 
