@@ -51,7 +51,8 @@ class Visits : public ::testing::Test {
       options.image_scale = 0.5;
       drives.push_back(folder() / ("visit" + std::to_string(visit)));
       SimulateOptions drive;
-      drive.max_duration_s = 18.0;
+      // The first one passes a place twice, and the others stay within what it saw.
+      drive.max_duration_s = visit == 0 ? 18.0 : 12.0;
       simulate(load_scenario("zurich", options), drives.back(), drive);
     }
     return drives;
