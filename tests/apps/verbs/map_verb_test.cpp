@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
@@ -101,25 +102,23 @@ std::string digest_of_map(const std::string& arguments, const fs::path& folder) 
   return nlohmann::json::parse(result.out).at("digest");
 }
 
-// Drives of three visits, the map of the first one and the map of the first two. They are made once,
-// and each test may change its copies.
+// Drives of three visits, the map of the first one and the map of the first two. They are made
+// once, and each test may change its copies.
 class MapOfFurtherDrives : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     made_ = std::make_unique<test::ScratchFolder>();
     for (const int visit : {0, 1, 2}) simulate_visit(visit, made_->path());
     for (const char* arguments : {"visit0 -m place.gpkg", "visit0 visit1 -m all.gpkg"}) {
-      const auto result = test::run_command(
-          std::string("roadbook map ") + arguments + " -q --json", made_->path());
+      const auto result =
+          test::run_command(std::string("roadbook map ") + arguments + " -q --json", made_->path());
       ASSERT_EQ(result.status, 0) << result.err;
       built_ = nlohmann::json::parse(result.out);
     }
   }
   static void TearDownTestSuite() { made_.reset(); }
 
-  void SetUp() override {
-    fs::copy(made_->path(), folder_.path(), fs::copy_options::recursive);
-  }
+  void SetUp() override { fs::copy(made_->path(), folder_.path(), fs::copy_options::recursive); }
 
   static inline std::unique_ptr<test::ScratchFolder> made_;
   static inline nlohmann::json built_;  // the result of the map of two visits
@@ -244,9 +243,7 @@ class MapGivenAgain : public ::testing::Test {
   }
   static void TearDownTestSuite() { made_.reset(); }
 
-  void SetUp() override {
-    fs::copy(made_->path(), folder_.path(), fs::copy_options::recursive);
-  }
+  void SetUp() override { fs::copy(made_->path(), folder_.path(), fs::copy_options::recursive); }
 
   nlohmann::json result_of(const std::string& arguments) {
     const auto result = test::run_command("roadbook " + arguments + " -q --json", folder_.path());
