@@ -18,10 +18,9 @@ constexpr std::uint64_t kDrives = 4;
 constexpr std::size_t kFewestRows = 40;
 constexpr unsigned kAllStreams = kWheels | kSteeringBit | kGyroBit | kPoses;
 
-Trajectory reference_of(const Observations& obs) { return smoothed(trajectory_of_poses(obs)); }
-
+// A way that wheels and gyro reckon would hide their own errors.
 std::vector<double> innovations_of(const Observations& obs, const EffectSizes& known) {
-  return row_residuals(obs, reference_of(obs), motion_effects_of(known));
+  return row_residuals(obs, smoothed(trajectory_of_lines(obs)), motion_effects_of(known));
 }
 
 // Of one channel, in the unit of reports.
@@ -72,7 +71,7 @@ Observations simulated_again(const Observations& obs,
                              const EffectSizes& effects,
                              const MotionNoise& noise,
                              std::uint64_t seed) {
-  const Trajectory along = reference_of(obs);
+  const Trajectory along = smoothed(trajectory_of_poses(obs));
   const std::vector<double> rows =
       predict_rows(obs, along, motion_effects_of(effects), kAllStreams, &along);
   const auto first = obs.offsets();

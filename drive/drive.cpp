@@ -87,6 +87,10 @@ std::int64_t Drive::image_stamp_ns(std::size_t frame, std::size_t camera) const 
   return impl_->content.frames.image_stamp_ns(frame, camera);
 }
 
+std::int64_t Drive::written_stamp_ns(std::size_t frame, std::size_t camera) const {
+  return image_stamp_ns(frame, camera) - offset_ns(rig().cameras.at(camera).time_offset_s);
+}
+
 bool Drive::has_image(std::size_t frame, std::size_t camera) const {
   return (impl_->content.frames.cameras.at(frame) >> camera & 1u) != 0;
 }

@@ -46,14 +46,16 @@ class Drive {
   [[nodiscard]] std::vector<Problem> warnings() const;
   [[nodiscard]] const std::vector<StreamSummary>& streams() const;
 
-  /// Instants at which at least one camera has an image, ascending; stamps of the shared clock
-  /// (time offsets of the cameras not applied). Stamps of one instant's images may differ by
+  /// Instants at which at least one camera has an image, ascending; stamps of the shared clock: the
+  /// cameras' time offsets are added. Stamps of one instant's images may differ by
   /// DriveOptions::stamp_tolerance_s; the instant has the stamp of the first camera that has an
   /// image (frame_index.hpp).
   [[nodiscard]] std::size_t frame_count() const;
   [[nodiscard]] std::int64_t frame_stamp_ns(std::size_t frame) const;
   /// Stamp of the camera's image; of the instant where the camera has none.
   [[nodiscard]] std::int64_t image_stamp_ns(std::size_t frame, std::size_t camera) const;
+  /// The same as the camera's table has it, without the camera's time offset.
+  [[nodiscard]] std::int64_t written_stamp_ns(std::size_t frame, std::size_t camera) const;
   [[nodiscard]] bool has_image(std::size_t frame, std::size_t camera) const;
   [[nodiscard]] std::filesystem::path image_path(std::size_t frame, std::size_t camera) const;
   /// The camera's `mask.png` (any size, 0: own vehicle); empty where the drive has none.

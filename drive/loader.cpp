@@ -92,6 +92,7 @@ class Loader {
           load_image_stream(folder, {lens.width, lens.height}, limits, options_, problems_));
       warn_of_grey_range(content_.images.back(), problems_);
       MountedCamera mounted = file ? file->camera : MountedCamera{};
+      content_.images.back().shift(offset_ns(mounted.time_offset_s));
       mounted.name = folder.filename().string();
       content_.rig.cameras.push_back(std::move(mounted));
       content_.streams.push_back(content_.images.back().summary);
@@ -137,6 +138,7 @@ class Loader {
       auto stream = load_image_stream(folder, {camera->camera.width, camera->camera.height}, limits,
                                       options_, problems_);
       content_.streams.push_back(stream.summary);
+      stream.shift(offset_ns(camera->time_offset_s));
       content_.segmentations[static_cast<std::size_t>(camera - cameras.begin())] =
           std::move(stream);
       remember(folder);

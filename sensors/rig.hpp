@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,5 +22,12 @@ struct MountedCamera {
 struct Rig {
   std::vector<MountedCamera> cameras;
 };
+
+/// Time offset [ns] of the first camera, whose stamps instants have; 0 without cameras.
+[[nodiscard]] inline std::int64_t image_offset_ns(const Rig& rig) {
+  return rig.cameras.empty()
+             ? 0
+             : static_cast<std::int64_t>(std::llround(1e9 * rig.cameras.front().time_offset_s));
+}
 
 }  // namespace roadbook

@@ -78,22 +78,32 @@ MapResult made_map(const MapRequest& request, const MapOptions& options, Message
   return result;
 }
 
-// Where a camera is in doubt, its errors are in the poses as well.
-bool doubts_a_camera(const std::vector<Problem>& warnings) {
-  return std::any_of(warnings.begin(), warnings.end(), [](const Problem& p) {
-    return std::filesystem::path(p.file).filename().string().starts_with("cam");
+// Where a camera of the drive is in doubt, its errors are in the poses as well.
+bool doubts_a_camera(const std::vector<Problem>& warnings, const std::filesystem::path& drive) {
+  return std::any_of(warnings.begin(), warnings.end(), [&](const Problem& p) {
+    const std::filesystem::path file(p.file);
+    const std::string name = file.filename().string();
+    if (!name.starts_with("cam") || name.find_first_not_of("0123456789", 3) != std::string::npos)
+      return false;
+    return file.parent_path() == drive || file.parent_path().parent_path() == drive;
   });
 }
 
+// The map is saved already: a drive that cannot be compared is a line, no failure.
 void warn_of_motion(const std::filesystem::path& file,
                     const EffectSizes& model,
+                    Messages& messages,
                     MapResult& result) {
   std::vector<Problem>& warnings = result.summary.warnings;
-  if (doubts_a_camera(warnings)) return;
+  const std::vector<Problem> of_cameras = warnings;
   const Map map = load_map(file);
-  for (const auto& folder : result.drives)
-    for (Problem& doubt : motion_doubts(map, Drive::open(folder), model))
-      warnings.push_back(std::move(doubt));
+  for (const auto& folder : result.drives) try {
+      if (doubts_a_camera(of_cameras, folder)) continue;
+      for (Problem& doubt : motion_doubts(map, Drive::open(folder), model))
+        warnings.push_back(std::move(doubt));
+    } catch (const BadInput& e) {
+      messages.note("the wheels were not compared with the images: " + std::string(e.what()));
+    }
 }
 
 }  // namespace
@@ -134,7 +144,7 @@ MapResult map_drives(const MapRequest& request, Messages& messages) {
       result.summary.warnings.insert(result.summary.warnings.end(), doubts.begin(), doubts.end());
     }
   if (lost_places) result.summary.warnings.push_back(*lost_places);
-  warn_of_motion(request.map, options.model, result);
+  warn_of_motion(request.map, options.model, messages, result);
   result.dropped = dropped_work(result.summary.dropped, request.map);
   return result;
 }

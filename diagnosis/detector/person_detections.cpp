@@ -130,10 +130,13 @@ SightingReadings sighting_readings(const Drive& drive, const std::vector<PoseSam
   std::error_code ignored;
   if (!std::filesystem::exists(folder / "data.csv", ignored) || truth.empty()) return {};
   const auto looks_file = folder / "looks.csv";
-  return sighting_readings(
-      read_detections(folder / "data.csv"),
-      std::filesystem::exists(looks_file, ignored) ? read_looks(looks_file) : std::vector<Look>{},
-      drive.rig(), poses, truth.front().t_ns);
+  auto detections = read_detections(folder / "data.csv");
+  auto looks =
+      std::filesystem::exists(looks_file, ignored) ? read_looks(looks_file) : std::vector<Look>{};
+  const std::int64_t offset_ns = image_offset_ns(drive.rig());
+  for (Detection& detection : detections) detection.t_ns += offset_ns;
+  for (Look& look : looks) look.t_ns += offset_ns;
+  return sighting_readings(detections, looks, drive.rig(), poses, truth.front().t_ns);
 }
 
 }  // namespace roadbook

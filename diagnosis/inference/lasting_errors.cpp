@@ -63,10 +63,8 @@ struct Lasting {
   double repaid = 0.0;  // of the last row's own error: what its white part had taken away
 };
 
-double autocorrelation(const std::vector<double>& e, std::size_t lag) {
-  const auto last = e.end() - static_cast<std::ptrdiff_t>(lag);
-  return std::inner_product(e.begin(), last, e.begin() + static_cast<std::ptrdiff_t>(lag), 0.0) /
-         std::max(std::inner_product(e.begin(), e.end(), e.begin(), 0.0), 1e-300);
+double squares_of(const std::vector<double>& e) {
+  return std::max(std::inner_product(e.begin(), e.end(), e.begin(), 0.0), 1e-300);
 }
 
 // No value where neighbours do not correlate significantly.
@@ -74,15 +72,25 @@ std::optional<Lasting> lasting_part(const std::vector<double>& e) {
   constexpr double kSignificant = 5.0;
   constexpr double kLongest = 0.999;
   if (e.size() < 50) return std::nullopt;
-  const double first = autocorrelation(e, 1);
+  const double squares = squares_of(e);
+  const auto autocorrelation = [&](std::size_t lag) {
+    const auto shift = static_cast<std::ptrdiff_t>(lag);
+    return std::inner_product(e.begin(), e.end() - shift, e.begin() + shift, 0.0) / squares;
+  };
+  const double first = autocorrelation(1);
   if (first * std::sqrt(static_cast<double>(e.size())) <= kSignificant) return std::nullopt;
-  // Autocorrelations are share * keep^lag: from the first to where they have fallen to a half.
+  // Autocorrelations are share * keep^lag: from the first to where they have fallen to a half, in
+  // steps that grow, so that the cost stays near linear.
   std::size_t lag = 2;
-  double last = autocorrelation(e, lag);
-  while (last > 0.5 * first && 10 * (lag + 1) < e.size()) last = autocorrelation(e, ++lag);
+  double last = autocorrelation(lag);
+  for (std::size_t next = 3; last > 0.5 * first && 10 * next < e.size(); next += 1 + next / 16) {
+    lag = next;
+    last = autocorrelation(lag);
+  }
   const double fallen = std::max(last, 0.0) / first;
   const double keep =
-      std::clamp(std::pow(fallen, 1.0 / static_cast<double>(lag - 1)), first, kLongest);
+      std::clamp(std::pow(fallen, 1.0 / static_cast<double>(lag - 1)), std::min(first, kLongest),
+                 kLongest);
   // Differences e - keep * e_before are a moving average of one step (ARMA(1, 1)).
   const double share = std::min(first / keep, 1.0);
   const double square = share * (1.0 - keep * keep) + (1.0 - share) * (1.0 + keep * keep);
@@ -97,6 +105,7 @@ std::optional<Lasting> lasting_part(const std::vector<double>& e) {
 
 std::optional<Innovations> without_autocorrelation(const Projection& projection,
                                                    const std::vector<std::size_t>& channels) {
+  constexpr double kGap = 10.0;  // usual intervals
   const Innovations& in = projection.innovations;
   const auto n = static_cast<Eigen::Index>(projection.accepted);
   const Fit fit = fit_of(in, n);
@@ -110,24 +119,31 @@ std::optional<Innovations> without_autocorrelation(const Projection& projection,
     if (!part) continue;
     if (!white) white = in;
     const double usual = std::max(median(steps), 1e-9);
+    // Behind a gap the recursion begins again, with whole errors.
+    const auto begins = [&](std::size_t k) { return k == 0 || steps[k - 1] > kGap * usual; };
     const auto row = [&](std::size_t k) { return white->values.data() + rows[k] * in.sides; };
-    double squares = 0.0, own = e[0];
-    for (std::size_t k = 1; k < rows.size(); ++k) {
+    double squares = 0.0, own = 0.0;
+    std::size_t predicted = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      if (begins(k)) {
+        own = e[k];
+        continue;
+      }
       const double keep = std::pow(part->keep, std::max(steps[k - 1] / usual, 0.0));
       own = e[k] - keep * e[k - 1] + part->repaid * own;
       squares += own * own;
+      ++predicted;
       const double* now = in.row(rows[k]);
       const double* before = in.row(rows[k - 1]);
       for (std::size_t s = 0; s < in.sides; ++s)
         row(k)[s] = now[s] - keep * before[s] + part->repaid * row(k - 1)[s];
     }
-    // What is left has the scatter 1 again; the first row is of the whole errors.
-    const double scale = std::sqrt(squares / static_cast<double>(rows.size() - 1));
-    const double whole = std::sqrt(std::inner_product(e.begin(), e.end(), e.begin(), 0.0) /
-                                   static_cast<double>(e.size()));
+    // What is left has the scatter 1 again.
+    const double scale = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(predicted, 1)));
+    const double whole = std::sqrt(squares_of(e) / static_cast<double>(e.size()));
     for (std::size_t k = 0; k < rows.size(); ++k)
       for (std::size_t s = 0; s < in.sides; ++s)
-        row(k)[s] /= std::max(k == 0 ? whole : scale, 1e-300);
+        row(k)[s] /= std::max(begins(k) ? whole : scale, 1e-300);
   }
   return white;
 }

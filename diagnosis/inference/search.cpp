@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "diagnosis/inference/acceptance.hpp"
 #include "diagnosis/inference/cause_evidence.hpp"
@@ -277,40 +280,71 @@ class Search {
   }
 
   // P-values of the accepted effects, corrected, where errors may last; none where they do not.
-  std::vector<double> p_where_errors_last() {
-    std::vector<double> p;
+  std::map<std::string, double> p_where_errors_last() {
+    std::map<std::string, double> p;
     if (const auto white = where_errors_last())
       for (std::size_t a = 0; a < model_.accepted.size(); ++a)
-        p.push_back(size_by_blocks(model_, *white, a).p * table().tests());
+        p[model_.accepted[a].candidate.name] =
+            size_by_blocks(model_, *white, a).p * table().tests();
     return p;
   }
 
   // Removes catalogued effects that are not significant once errors may last, neither beside all
   // others nor beside those that stay. Only what remains when every effect is fitted says whether
   // errors last. Generic effects of this kind stay in the model, so that no other effect absorbs
-  // their part of the data, but are no findings.
+  // their part of the data, but are no findings. Where one effect of a pair that imitates a third
+  // is removed, the third takes the other's place.
   void doubt_what_lasting_errors_show() {
-    const auto is_name = [&](std::size_t a) {
-      return model_.accepted[a].candidate.kind != CandidateKind::kGrammar;
-    };
-    std::vector<double> first = p_where_errors_last();
-    std::vector<double> now = first;
+    const std::map<std::string, double> first = p_where_errors_last();
+    std::map<std::string, double> now = first;
     for (;;) {
       double most = kMostLastingP;
-      std::size_t worst = now.size();
-      for (std::size_t a = 0; a < now.size(); ++a)
-        if (const double p = std::min(now[a], first[a]); is_name(a) && p > most) {
-          most = p;
-          worst = a;
-        }
-      if (worst == now.size()) return;
+      std::size_t worst = model_.accepted.size();
+      for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
+        const Candidate& candidate = model_.accepted[a].candidate;
+        const auto there = now.find(candidate.name);
+        if (candidate.kind == CandidateKind::kGrammar || there == now.end()) continue;
+        const auto before = first.find(candidate.name);
+        const double p = before == first.end() ? there->second
+                                               : std::min(there->second, before->second);
+        if (p <= most) continue;
+        most = p;
+        worst = a;
+      }
+      if (worst == model_.accepted.size()) return;
+      doubted_.insert(model_.accepted[worst].candidate.name);
       CauseModel model = model_;
       drop(model, worst);
-      first.erase(first.begin() + static_cast<std::ptrdiff_t>(worst));
       fit(model, 3);
       set_model(std::move(model));
+      replace_weaker_effects(0);
+      prefer_smallest_sizes();
       now = p_where_errors_last();
     }
+  }
+
+  // What the lasting errors took from the findings is neither found nor absent.
+  void add_doubted(SearchResult& result) const {
+    const auto is_there = [&](const std::string& name) {
+      return std::any_of(result.verdicts.begin(), result.verdicts.end(),
+                         [&](const AcceptedEffect& v) {
+                           return v.cause.candidate.name == name ||
+                                  std::find(v.inseparable.begin(), v.inseparable.end(), name) !=
+                                      v.inseparable.end();
+                         });
+    };
+    for (const std::string& name : doubted_) {
+      if (is_there(name)) continue;
+      drop_name(result, name);
+      result.hidden.push_back({name, "errors of the reference that last"});
+    }
+    std::erase_if(result.doubts, [&](const FitWarning& d) {
+      return doubted_.contains(d.name) && !is_accepted_name(d.name);
+    });
+  }
+  [[nodiscard]] bool is_accepted_name(const std::string& name) const {
+    return std::any_of(model_.accepted.begin(), model_.accepted.end(),
+                       [&](const Accepted& a) { return a.candidate.name == name; });
   }
 
   static void drop_name(SearchResult& result, const std::string& name) {
@@ -332,6 +366,7 @@ class Search {
       if (lasting) {
         const SizeByBlocks there = size_by_blocks(model_, *lasting, a);
         v.sigma = std::max(v.sigma, there.sigma);
+        v.p = std::min(1.0, std::max(v.p, there.p * table.tests()));
         v.of_lasting_errors = v.cause.candidate.kind == CandidateKind::kGrammar &&
                               there.p * table.tests() > kMostLastingP;
       }
@@ -350,12 +385,14 @@ class Search {
     for (const AcceptedEffect& v : result.verdicts)
       for (const std::string& name : v.inseparable) drop_name(result, name);
     // So is the mean of an accepted generic effect.
-    for (const Accepted& a : model_.accepted) drop_name(result, a.candidate.named_mean);
+    for (const AcceptedEffect& v : result.verdicts)
+      if (!v.of_lasting_errors) drop_name(result, v.cause.candidate.named_mean);
     result.model = model_;
     result.impossible = impossible_;
     result.doubts = doubts_;
     for (FitWarning& d : lack_of_fit_warnings(problem_, model_, table))
       result.doubts.push_back(std::move(d));
+    add_doubted(result);
     return result;
   }
 
@@ -366,6 +403,7 @@ class Search {
   std::optional<ScoreTable> table_;
   std::vector<Impossible> impossible_;
   std::vector<FitWarning> doubts_;
+  std::set<std::string> doubted_;  // effects that lasting errors explain as well
 };
 
 }  // namespace

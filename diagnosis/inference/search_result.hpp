@@ -34,7 +34,8 @@ struct SearchOptions {
 struct AcceptedEffect {
   Accepted cause;
   double sigma = 0.0;  ///< of a single size
-  double p = 1.0;      ///< p-value, corrected for the number of candidates
+  /// P-value, corrected for the number of candidates; where errors of the reference last, with them.
+  double p = 1.0;
   double statistic = 0.0;
   double evidence = 0.0;
   HeldOutGain gain;
@@ -60,7 +61,8 @@ struct Impossible {
 /// A catalogued effect that this drive shows alone, but not in addition to an accepted effect.
 struct HiddenEffect {
   std::string name;
-  std::string by;  ///< the accepted effect; of a generic one "poses.scale depends on place"
+  /// The accepted effect ("poses.scale depends on place"), or "errors of the reference that last".
+  std::string by;
 };
 
 struct SearchResult {

@@ -229,35 +229,44 @@ double sideways_scatter(const Observations& obs,
   return std::sqrt(std::max(left, 0.0) / static_cast<double>(rows.size()));
 }
 
+// Knots over the stamps of the poses; delayed streams begin and end earlier.
+Trajectory around_poses(const Observations& obs, double late_s) {
+  const double from = obs.poses.front().t_s + std::min(0.0, late_s) - 2.0 * obs.step_s;
+  const double to = obs.poses.back().t_s + std::max(0.0, late_s) + 2.0 * obs.step_s;
+  const auto knots = static_cast<std::size_t>(std::ceil((to - from) / obs.step_s)) + 1;
+  return {from, obs.step_s, std::max<std::size_t>(knots, 3)};
+}
+
 }  // namespace
 
 Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
   const PoseLines pose_lines = lines_of(obs.poses);
-  // By stamps; delayed streams begin and end earlier.
-  const double from = obs.poses.front().t_s + std::min(0.0, late_s) - 2.0 * obs.step_s;
-  const double to = obs.poses.back().t_s + std::max(0.0, late_s) + 2.0 * obs.step_s;
-  const auto knots = static_cast<std::size_t>(std::ceil((to - from) / obs.step_s)) + 1;
-  Trajectory trajectory(from, obs.step_s, std::max<std::size_t>(knots, 3));
-  const std::vector<PoseRun> runs = runs_of(obs.poses);
   // Without measured headings, the scatter of such poses hides the course.
   double rough_m = !obs.poses_have_heading && pose_lines.too_rough ? pose_lines.scatter_m : 0.0;
   if (obs.poses_have_heading) {
     constexpr double kMostSideways = 0.1;  // [m/s]
-    const double sideways = sideways_scatter(obs, runs, pose_lines.window_s);
+    const double sideways = sideways_scatter(obs, runs_of(obs.poses), pose_lines.window_s);
     if (sideways > kMostSideways) rough_m = 3.0 * sideways * pose_lines.window_s;
   }
-  if (rough_m > 0.0 && lay_way_on_positions(obs, rough_m, trajectory)) {
-    trajectory.integrate();
-    trajectory.begin_at(from - late_s);
-    return trajectory;
-  }
+  if (rough_m <= 0.0) return trajectory_of_lines(obs, late_s);
+  Trajectory trajectory = around_poses(obs, late_s);
+  if (!lay_way_on_positions(obs, rough_m, trajectory)) return trajectory_of_lines(obs, late_s);
+  trajectory.integrate();
+  trajectory.begin_at(trajectory.knot_s(0) - late_s);
+  return trajectory;
+}
+
+Trajectory trajectory_of_lines(const Observations& obs, double late_s) {
+  const double window_s = lines_of(obs.poses).window_s;
+  Trajectory trajectory = around_poses(obs, late_s);
+  const std::vector<PoseRun> runs = runs_of(obs.poses);
   std::size_t j = 0;
   double left_s = 0.0;
   PoseMoment left;  // the last of the run before
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const double begin_s = obs.poses[runs[r].begin].t_s;
     const double end_s = obs.poses[runs[r].end - 1].t_s;
-    RunLines lines(obs, runs[r], pose_lines.window_s);
+    RunLines lines(obs, runs[r], window_s);
     double turned_more = 0.0;
     if (r > 0) {
       const PoseMoment reached = lines.at(begin_s);
@@ -281,7 +290,7 @@ Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
     left = at(end_s);
   }
   trajectory.integrate();
-  trajectory.begin_at(from - late_s);
+  trajectory.begin_at(trajectory.knot_s(0) - late_s);
   return trajectory;
 }
 

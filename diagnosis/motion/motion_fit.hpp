@@ -40,9 +40,13 @@ struct Pass {
                             const Columns& columns,
                             const PassOptions& options = {});
 
-/// First guess: local slopes of the poses over 0.6 s; in their gaps dead reckoning from side to
-/// side. The poses show the motion `late_s` earlier than their stamps say; the trajectory covers
+/// Motion along lines fitted to the poses over 0.6 to 1.5 s; in their gaps dead reckoning from side
+/// to side. The poses show the motion `late_s` earlier than their stamps say; the trajectory covers
 /// their stamps as well.
+[[nodiscard]] Trajectory trajectory_of_lines(const Observations& obs, double late_s = 0.0);
+
+/// First guess: `trajectory_of_lines`; where the poses are too rough for it, the way that wheels and
+/// gyro reckon, laid on the poses. That way shows no error of wheels or gyro.
 [[nodiscard]] Trajectory trajectory_of_poses(const Observations& obs, double late_s = 0.0);
 
 /// Adds the solution of a pass (its right-hand sides weighted) to the trajectory.

@@ -16,8 +16,8 @@ struct BlockPart {
 [[nodiscard]] double squares_of_blocks(std::vector<BlockPart> parts, double length_s);
 
 /// P-value of a sum by the scatter of blocks of 1, 2, 4, ... s in place of a model's noise: the
-/// largest of those lengths that leave six blocks (cluster-robust; F distribution with as many
-/// degrees of freedom as blocks that show something). Large where errors last. `sum`: over its
+/// largest of those lengths that leave six blocks (cluster-robust; F distribution with one
+/// degree of freedom less than there are blocks, counted as if each showed as much). Large where errors last. `sum`: over its
 /// rows, such that its square over the squares of blocks is a statistic of `freedom` parameters.
 [[nodiscard]] double p_by_block_scatter(double sum, std::vector<BlockPart> parts, int freedom);
 

@@ -121,7 +121,7 @@ void level_motion(const std::vector<Attitude>& road,
 
 std::vector<Attitude> slopes_of(const std::vector<PoseSample>& poses,
                                 const std::vector<double>& heights_m) {
-  // From anchor to anchor, so that the scatter of tilt_at or slow poses does not add up.
+  // From anchor to anchor, so that the scatter of standing or slow poses does not add up.
   constexpr double kAnchor_m = 1.0;
   std::vector<double> way;
   double base = 0.0;

@@ -1,15 +1,21 @@
 #include "diagnosis/streams/shown_unit.hpp"
 
+#include <algorithm>
 #include <numbers>
+#include <utility>
+#include <vector>
+
+#include "base/median.hpp"
 
 namespace roadbook {
 
 ShownUnit shown_unit(const Observations& obs, Channel channel) {
   constexpr double kDegrees = 180.0 / std::numbers::pi;
-  const double interval_s = obs.wheels.size() > 1
-                                ? (obs.wheels.back().t_s - obs.wheels.front().t_s) /
-                                      static_cast<double>(obs.wheels.size() - 1)
-                                : 1.0;
+  std::vector<double> intervals;  // the usual one: gaps do not count
+  for (std::size_t i = 1; i < obs.wheels.size(); ++i)
+    intervals.push_back(obs.wheels[i].t_s - obs.wheels[i - 1].t_s);
+  const double interval_s =
+      intervals.empty() ? 1.0 : std::max(median(std::move(intervals)), 1e-9);
   switch (channel) {
     case Channel::kWheelDistance:
       return {"cm/s", 100.0 / interval_s};

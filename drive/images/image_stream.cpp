@@ -214,8 +214,14 @@ void ImageNames::add(std::int64_t t_ns, const std::string& name) {
 }
 
 std::string ImageNames::at(std::int64_t t_ns) const {
-  const auto other = others_.find(t_ns);
-  return other == others_.end() ? by_rule(t_ns) : other->second;
+  const std::int64_t named_ns = t_ns - shift_ns_;
+  const auto other = others_.find(named_ns);
+  return other == others_.end() ? by_rule(named_ns) : other->second;
+}
+
+void ImageStream::shift(std::int64_t by_ns) {
+  for (std::int64_t& t_ns : stamps_ns) t_ns += by_ns;
+  names.shift(by_ns);
 }
 
 std::string ImageNames::by_rule(std::int64_t t_ns) const {

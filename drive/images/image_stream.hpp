@@ -22,6 +22,8 @@ class ImageNames {
  public:
   void add(std::int64_t t_ns, const std::string& name);
   [[nodiscard]] std::string at(std::int64_t t_ns) const;
+  /// From here on `at` takes stamps that are so much later than those of the names.
+  void shift(std::int64_t by_ns) { shift_ns_ += by_ns; }
 
  private:
   [[nodiscard]] std::string by_rule(std::int64_t t_ns) const;
@@ -29,6 +31,7 @@ class ImageNames {
   std::size_t digits_ = 0;
   std::string extension_;
   std::unordered_map<std::int64_t, std::string> others_;
+  std::int64_t shift_ns_ = 0;
 };
 
 /// Size every image of a stream must have; zeros: not known.
@@ -54,6 +57,9 @@ struct ImageStream {
   std::string digest;                   ///< of stamps, names and file sizes
   std::vector<RepeatedImages> repeats;  ///< of five images and more
   std::optional<GreyRange> greys;       ///< of its 16-bit images; empty: it has none
+
+  /// Moves the stamps of the images; the summary keeps those of the table.
+  void shift(std::int64_t by_ns);
 };
 
 /// Reads `sensor_folder`/data.csv and looks at the head and tail of every image file. A table fault

@@ -69,7 +69,7 @@ ImportResult import_euroc(const ImportJob& job) {
     report(job.progress, "import", frame, drive.frame_count());
     for (std::size_t camera = 0; camera < drive.rig().cameras.size(); ++camera) {
       if (!drive.has_image(frame, camera)) continue;
-      writer.copy_image(camera, drive.image_stamp_ns(frame, camera),
+      writer.copy_image(camera, drive.written_stamp_ns(frame, camera),
                         drive.image_path(frame, camera));
       ++result.images;
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
@@ -60,19 +61,35 @@ void BlockCholesky::analyse(const std::vector<std::pair<int, int>>& pairs) {
     begin_[j + 1] = begin_[j] + rows.size() + 1;
   }
   rows_.reserve(begin_[n]);
-  row_begin_.assign(n + 1, 0);
   for (std::size_t j = 0; j < n; ++j) {
     rows_.push_back(static_cast<int>(j));
     rows_.insert(rows_.end(), below[j].begin(), below[j].end());
-    for (const int row : below[j]) ++row_begin_[at(row) + 1];
   }
-  for (std::size_t j = 0; j < n; ++j) row_begin_[j + 1] += row_begin_[j];
-  row_entries_.resize(row_begin_[n]);
-  std::vector<std::size_t> next(row_begin_.begin(), row_begin_.end() - 1);
-  for (std::size_t j = 0; j < n; ++j)
-    for (std::size_t p = begin_[j] + 1; p < begin_[j + 1]; ++p)
-      row_entries_[next[at(rows_[p])]++] = {static_cast<int>(j), p};
+  find_supernodes();
   blocks_.assign(rows_.size(), Matrix6d::Zero());
+}
+
+// Columns of one supernode follow each other and have the same rows below the last of them.
+void BlockCholesky::find_supernodes() {
+  constexpr std::size_t kMostColumns = 8;  // more would leave workers waiting
+  const std::size_t n = size();
+  supernodes_.clear();
+  std::vector<std::size_t> supernode_of(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    const bool goes_on = j > 0 && j - supernodes_.back() < kMostColumns &&
+                         count(j - 1) == count(j) + 1 && at(rows_[begin_[j - 1] + 1]) == j;
+    if (!goes_on) supernodes_.push_back(j);
+    supernode_of[j] = supernodes_.size() - 1;
+  }
+  sources_.assign(supernodes_.size(), {});
+  for (std::size_t k = 0; k < supernodes_.size(); ++k) {
+    const std::size_t first = supernodes_[k];
+    for (std::size_t row = end_of(k) - first; row < count(first); ++row) {
+      auto& sources = sources_[supernode_of[at(rows_[begin_[first] + row])]];
+      if (sources.empty() || sources.back().supernode != k) sources.push_back({k, row, 0});
+      ++sources.back().targets;
+    }
+  }
 }
 
 BlockCholesky::Column BlockCholesky::column(int position) {
@@ -102,8 +119,25 @@ void BlockCholesky::add(int a, int b, const Matrix6d& value) {
     target += value;
 }
 
-// Left-looking: column j takes what all columns before it have to say, in ascending order.
-bool BlockCholesky::factor_column(std::size_t j, std::vector<std::size_t>& place) {
+namespace {
+
+// Where block `row 0` of each column of a panel would be, if its columns were complete.
+struct PanelColumns {
+  std::vector<double*> of;
+  PanelColumns(Matrix6d* blocks,
+               const std::vector<std::size_t>& begin,
+               std::size_t first,
+               std::size_t end) {
+    for (std::size_t j = first; j < end; ++j)
+      of.push_back(blocks->data() + 36 * (begin[j] - (j - first)));
+  }
+};
+
+}  // namespace
+
+// The blocks of column j below its diagonal, and the diagonal, from those of the matrix less what
+// the columns before it have to say.
+bool BlockCholesky::finish_column(std::size_t j) {
   Matrix6d& diagonal = blocks_[begin_[j]];
   const Eigen::LLT<Matrix6d> llt(diagonal);
   if (llt.info() != Eigen::Success || !diagonal.allFinite()) return false;
@@ -114,32 +148,49 @@ bool BlockCholesky::factor_column(std::size_t j, std::vector<std::size_t>& place
   for (std::size_t p = begin_[j] + 1; p < begin_[j + 1]; ++p) {
     const Matrix6d a = blocks_[p];
     blocks_[p].noalias() = a * inverse;
-    place[at(rows_[p])] = p;
   }
   return true;
 }
 
+// Left-looking: a supernode takes what all supernodes before it have to say, in ascending order.
 bool BlockCholesky::factor(int num_threads) {
   const std::size_t n = size();
+  const std::size_t panels = sources_.size();
   const auto workers = static_cast<std::size_t>(n < 64 ? 1 : thread_count(num_threads));
   std::atomic<std::size_t> next{0};
   std::atomic<bool> good{true};
-  // Columns are handed out in ascending order, so whatever a worker waits for is being worked on.
-  const auto done = std::make_unique<std::atomic<int>[]>(n);
+  // Supernodes are handed out in ascending order, so whatever a worker waits for is being worked on.
+  const auto done = std::make_unique<std::atomic<int>[]>(panels);
   parallel_for(workers, static_cast<int>(workers), [&](std::size_t) {
-    std::vector<std::size_t> place(n, 0);
-    for (std::size_t j = next++; j < n; j = next++) {
-      for (std::size_t p = begin_[j]; p < begin_[j + 1]; ++p) place[at(rows_[p])] = p;
-      for (std::size_t e = row_begin_[j]; e < row_begin_[j + 1]; ++e) {
-        const auto [k, index] = row_entries_[e];
-        if (workers > 1) done[at(k)].wait(0, std::memory_order_acquire);
-        subtract_column({blocks_[index].data(), rows_.data() + index, begin_[at(k) + 1] - index,
-                         place.data(), blocks_.front().data()});
+    std::vector<std::size_t> row_of(n, 0);  // of the panel, by row of the matrix
+    std::vector<std::size_t> place;
+    for (std::size_t panel = next++; panel < panels; panel = next++) {
+      const std::size_t first = supernodes_[panel];
+      const std::size_t width = end_of(panel) - first;
+      const PanelColumns columns(blocks_.data(), begin_, first, end_of(panel));
+      for (std::size_t r = 0; r < count(first); ++r) row_of[at(rows_[begin_[first] + r])] = r;
+      for (const Source& source : sources_[panel]) {
+        if (workers > 1) done[source.supernode].wait(0, std::memory_order_acquire);
+        const std::size_t from = supernodes_[source.supernode];
+        const std::size_t to = end_of(source.supernode);
+        const PanelColumns source_columns(blocks_.data(), begin_, from, to);
+        place.clear();
+        for (std::size_t r = source.first_row; r < count(from); ++r)
+          place.push_back(row_of[at(rows_[begin_[from] + r])]);
+        subtract_panel({source_columns.of.data(), to - from, source.first_row, source.targets,
+                        place.size(), place.data(), columns.of.data()});
       }
-      if (good && !factor_column(j, place)) good = false;
+      place.resize(count(first));
+      std::iota(place.begin(), place.end(), std::size_t{0});
+      for (std::size_t c = 0; c < width && good; ++c) {
+        if (c > 0)
+          subtract_panel({columns.of.data(), c, c, 1, place.size() - c, place.data() + c,
+                          columns.of.data()});
+        if (!finish_column(first + c)) good = false;
+      }
       if (workers > 1) {
-        done[j].store(1, std::memory_order_release);
-        done[j].notify_all();
+        done[panel].store(1, std::memory_order_release);
+        done[panel].notify_all();
       }
     }
   });
@@ -210,39 +261,61 @@ void BlockCholesky::solve_in_order(Panel& y) const {
   }
 }
 
-// With unit columns l_kj = L_kj L_jj^-1: Z_ij = -sum_k Z_ik l_kj over the column's own rows, and
-// Z_jj = (L_jj L_jj^T)^-1 - sum_k l_kj^T Z_kj. Every Z_ik needed lies in the factor's pattern.
-std::vector<Matrix6d> BlockCholesky::inverse_diagonal() {
-  const std::size_t n = size();
-  std::vector<Matrix6d>& Z = blocks_;  // columns after j hold Z already, the others still L
-  std::vector<Matrix6d> l;
-  std::vector<Matrix6d> sum;
-  for (std::size_t j = n; j-- > 0;) {
-    const Matrix6d inverse =
-        blocks_[begin_[j]].triangularView<Eigen::Lower>().solve(Matrix6d::Identity());
-    const std::size_t first = begin_[j] + 1;
-    const std::size_t count = begin_[j + 1] - first;
-    l.resize(count);
-    for (std::size_t k = 0; k < count; ++k) l[k].noalias() = blocks_[first + k] * inverse;
-    sum.assign(count, Matrix6d::Zero());
-    for (std::size_t k = 0; k < count; ++k) {
-      std::size_t p = begin_[at(rows_[first + k])];
-      sum[k].noalias() += Z[p].lazyProduct(l[k]);
-      for (std::size_t i = k + 1; i < count; ++i) {
-        while (rows_[p] != rows_[first + i]) ++p;
-        sum[i].noalias() += Z[p].lazyProduct(l[k]);
-        sum[k].noalias() += Z[p].transpose().lazyProduct(l[i]);
+// The columns of supernode J and the rows R below it (Takahashi et al. 1973, by blocks). With
+// l = L_RJ L_JJ^-1: Z_RJ = -Z_RR l, and Z_JJ = (L_JJ L_JJ^T)^-1 + l^T Z_RR l. Every block of Z_RR
+// lies in the factor's pattern, in columns behind those of J, which hold Z already.
+void BlockCholesky::invert_supernode(std::size_t panel, int num_threads) {
+  const std::size_t first = supernodes_[panel];
+  const std::size_t width = end_of(panel) - first;
+  const std::size_t below = count(first) - width;
+  const int* const rows = rows_.data() + begin_[first] + width;
+  const PanelColumns columns(blocks_.data(), begin_, first, end_of(panel));
+  const auto block = [&](std::size_t r, std::size_t c) {
+    return Eigen::Map<Matrix6d>(columns.of[c] + 36 * r);
+  };
+  const auto index = [](std::size_t i) { return static_cast<Eigen::Index>(6 * i); };
+  Eigen::MatrixXd L = Eigen::MatrixXd::Zero(index(width), index(width));
+  for (std::size_t c = 0; c < width; ++c)
+    for (std::size_t r = c; r < width; ++r) L.block<6, 6>(index(r), index(c)) = block(r, c);
+  const Eigen::MatrixXd M = L.triangularView<Eigen::Lower>().solve(
+      Eigen::MatrixXd::Identity(index(width), index(width)));
+  using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+  std::vector<Rows> l(below, Rows::Zero(6, index(width)));
+  std::vector<Rows> sum = l;  // Z_RR l
+  for (std::size_t r = 0; r < below; ++r)
+    for (std::size_t c = 0; c < width; ++c)
+      l[r].noalias() += block(width + r, c) * M.middleRows<6>(index(c));
+  // Each thread has columns of its own.
+  const double work = static_cast<double>(below) * static_cast<double>(below * width);
+  const auto workers =
+      work < 1e4 ? std::size_t{1} : std::min(width, static_cast<std::size_t>(thread_count(num_threads)));
+  parallel_for(workers, static_cast<int>(workers), [&](std::size_t worker) {
+    const std::size_t begin = width * worker / workers;
+    const std::size_t columns_of_worker = width * (worker + 1) / workers - begin;
+    const auto at_begin = [&](Rows& row) { return row.data() + 36 * begin; };
+    for (std::size_t k = 0; k < below; ++k) {
+      std::size_t p = begin_[at(rows[k])];
+      for (std::size_t i = k; i < below; ++i) {
+        while (rows_[p] != rows[i]) ++p;
+        add_symmetric({blocks_[p].data(), i == k ? nullptr : at_begin(l[i]), at_begin(l[k]),
+                       columns_of_worker, at_begin(sum[i]), at_begin(sum[k])});
       }
     }
-    Matrix6d Z_jj = inverse.transpose() * inverse;
-    for (std::size_t k = 0; k < count; ++k) {
-      Z[first + k] = -sum[k];
-      Z_jj.noalias() += l[k].transpose() * sum[k];
-    }
-    Z[begin_[j]] = 0.5 * (Z_jj + Z_jj.transpose());
+  });
+  Eigen::MatrixXd Z_JJ = M.transpose() * M;
+  for (std::size_t r = 0; r < below; ++r) Z_JJ.noalias() += l[r].transpose() * sum[r];
+  Z_JJ = (0.5 * (Z_JJ + Z_JJ.transpose())).eval();
+  for (std::size_t c = 0; c < width; ++c) {
+    for (std::size_t r = c; r < width; ++r) block(r, c) = Z_JJ.block<6, 6>(index(r), index(c));
+    for (std::size_t r = 0; r < below; ++r)
+      block(width + r, c) = -sum[r].middleCols<6>(index(c));
   }
-  std::vector<Matrix6d> diagonal(n);
-  for (std::size_t i = 0; i < n; ++i) diagonal[i] = Z[begin_[at(position_[i])]];
+}
+
+std::vector<Matrix6d> BlockCholesky::inverse_diagonal(int num_threads) {
+  for (std::size_t panel = supernodes_.size(); panel-- > 0;) invert_supernode(panel, num_threads);
+  std::vector<Matrix6d> diagonal(size());
+  for (std::size_t i = 0; i < size(); ++i) diagonal[i] = blocks_[begin_[at(position_[i])]];
   return diagonal;
 }
 

@@ -54,24 +54,32 @@ class BlockCholesky {
   /// Returns the diagonal blocks of the inverse, one for each unknown, from the sparse inverse
   /// (Takahashi et al. 1973). Call `factor` first. Overwrites the factor, because the memory does
   /// not hold both for a large map.
-  [[nodiscard]] std::vector<Matrix6d> inverse_diagonal();
+  [[nodiscard]] std::vector<Matrix6d> inverse_diagonal(int num_threads);
 
  private:
   void order(const std::vector<std::pair<int, int>>& pairs);
   void analyse(const std::vector<std::pair<int, int>>& pairs);
-  bool factor_column(std::size_t j, std::vector<std::size_t>& place);
+  void find_supernodes();
+  [[nodiscard]] bool finish_column(std::size_t j);
+  void invert_supernode(std::size_t panel, int num_threads);
+  [[nodiscard]] std::size_t count(std::size_t j) const { return begin_[j + 1] - begin_[j]; }
+  [[nodiscard]] std::size_t end_of(std::size_t supernode) const {
+    return supernode + 1 < supernodes_.size() ? supernodes_[supernode + 1] : size();
+  }
   void solve_in_order(Panel& y) const;
 
-  struct RowEntry {
-    int column;
-    std::size_t index;  ///< of the block in the storage
+  // A supernode whose rows from `first_row` on are columns of another one: `targets` of them.
+  struct Source {
+    std::size_t supernode;
+    std::size_t first_row;
+    std::size_t targets;
   };
   std::vector<int> position_;
   std::vector<std::size_t> begin_;  ///< of each column in rows_ and blocks_; one more at the end
   std::vector<int> rows_;
   std::vector<Matrix6d> blocks_;
-  std::vector<std::size_t> row_begin_;
-  std::vector<RowEntry> row_entries_;  ///< blocks left of the diagonal, row by row
+  std::vector<std::size_t> supernodes_;       ///< first column of each
+  std::vector<std::vector<Source>> sources_;  ///< of each supernode, ascending
 };
 
 }  // namespace roadbook

@@ -31,14 +31,66 @@ template <std::size_t kInner>
   }
 }
 
+// C += A B for a 6x6 block A and rows B and C of `width` such blocks.
+[[gnu::always_inline]] inline void add_product(const double* A,
+                                               const double* B,
+                                               std::size_t width,
+                                               double* C) {
+  Four upper[kSide];
+  Two lower[kSide];
+  for (std::size_t k = 0; k < kSide; ++k) {
+    upper[k] = *reinterpret_cast<const Four*>(A + kSide * k);
+    lower[k] = *reinterpret_cast<const Two*>(A + kSide * k + 4);
+  }
+  for (std::size_t c = 0; c < kSide * width; ++c) {
+    const double* b = B + kSide * c;
+    Four u = upper[0] * b[0];
+    Two l = lower[0] * b[0];
+    for (std::size_t k = 1; k < kSide; ++k) {
+      u += upper[k] * b[k];
+      l += lower[k] * b[k];
+    }
+    *reinterpret_cast<Four*>(C + kSide * c) += u;
+    *reinterpret_cast<Two*>(C + kSide * c + 4) += l;
+  }
+}
+
 }  // namespace
 
-ROADBOOK_CLONES void subtract_column(const ColumnUpdate& update) {
+ROADBOOK_CLONES void subtract_panel(const PanelUpdate& update) {
   constexpr std::size_t kBlock = kSide * kSide;
-  for (std::size_t p = 0; p < update.count; ++p)
-    subtract_outer<kSide>(
-        update.L_jk + kBlock * p, update.L_jk,
-        update.blocks + kBlock * update.place[static_cast<std::size_t>(update.rows[p])]);
+  for (std::size_t i = 0; i < update.count; ++i)
+    for (std::size_t j = 0; j < update.targets && j <= i; ++j) {
+      Four upper[kSide] = {};
+      Two lower[kSide] = {};
+      for (std::size_t k = 0; k < update.width; ++k) {
+        const double* A = update.source[k] + kBlock * (update.first + i);
+        const double* B = update.source[k] + kBlock * (update.first + j);
+        for (std::size_t t = 0; t < kSide; ++t) {
+          const Four u = *reinterpret_cast<const Four*>(A + kSide * t);
+          const Two l = *reinterpret_cast<const Two*>(A + kSide * t + 4);
+          for (std::size_t c = 0; c < kSide; ++c) {
+            upper[c] += u * B[kSide * t + c];
+            lower[c] += l * B[kSide * t + c];
+          }
+        }
+      }
+      double* C = update.target[update.place[j]] + kBlock * update.place[i];
+      for (std::size_t c = 0; c < kSide; ++c) {
+        *reinterpret_cast<Four*>(C + kSide * c) -= upper[c];
+        *reinterpret_cast<Two*>(C + kSide * c + 4) -= lower[c];
+      }
+    }
+}
+
+ROADBOOK_CLONES void add_symmetric(const SymmetricProduct& product) {
+  add_product(product.Z, product.l_k, product.width, product.sum_i);
+  if (product.l_i == nullptr) return;
+  double transposed[kSide * kSide];
+  for (std::size_t c = 0; c < kSide; ++c)
+    for (std::size_t r = 0; r < kSide; ++r)
+      transposed[c + kSide * r] = product.Z[r + kSide * c];
+  add_product(transposed, product.l_i, product.width, product.sum_k);
 }
 
 ROADBOOK_CLONES void subtract_outer_63(const double* A, const double* B, double* C) {

@@ -237,7 +237,7 @@ double BundleSystem::gradient_norm() const {
 }
 
 std::vector<Matrix6d> BundleSystem::pose_covariances(Eigen::MatrixXd& scale_covariance) {
-  std::vector<Matrix6d> covariances = S_.inverse_diagonal();
+  std::vector<Matrix6d> covariances = S_.inverse_diagonal(options_.num_threads);
   scale_covariance = scale_inverse_;
   // Inverse of the bordered matrix: S^-1 + X C X^T with C the covariance of the scales.
   for (std::size_t v = 0; v < covariances.size(); ++v) {

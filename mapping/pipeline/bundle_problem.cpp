@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "vo/planar_motion.hpp"
 
@@ -80,14 +83,51 @@ class Quota {
 // A key point this many keyframes after the previous one belongs to another pass.
 constexpr int kPassGapKeyframes = 20;
 
-// The key points of each pass around the keyframe nearest to the corner.
-std::vector<KeyPointId> nearest_views(const JoinedTrack& track,
-                                      const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                      int reach_keyframes) {
-  std::vector<KeyPointId> kept;
+// Key points of one corner that may become a point of the problem.
+struct Candidate {
+  std::size_t track;
+  int group;  // of passes
+  std::vector<KeyPointId> views;
+};
+
+// Passes over one place in groups. The last pass of a group is the first one of the next: it holds
+// both together.
+class PassGroups {
+ public:
+  PassGroups(std::vector<int> pass_number, int passes_together)
+      : number_(std::move(pass_number)), step_(std::max(2, passes_together) - 1) {}
+  [[nodiscard]] int group_of(int keyframe) const {
+    const int n = number_[static_cast<std::size_t>(keyframe)];
+    return n == 0 ? 0 : (n - 1) / step_;
+  }
+  // The group that begins with the keyframe's pass.
+  [[nodiscard]] std::optional<int> next_of(int keyframe) const {
+    const int n = number_[static_cast<std::size_t>(keyframe)];
+    if (n == 0 || n % step_ != 0) return std::nullopt;
+    return n / step_;
+  }
+  [[nodiscard]] bool holds(int group, int keyframe) const {
+    return group_of(keyframe) == group || next_of(keyframe) == group;
+  }
+
+ private:
+  std::vector<int> number_;
+  int step_;
+};
+
+// The key points of one pass around its keyframe nearest to the corner.
+struct PassViews {
+  int nearest;
+  std::vector<KeyPointId> views;
+};
+
+std::vector<PassViews> views_by_pass(const JoinedTrack& track,
+                                     const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                     int reach_keyframes) {
+  std::vector<PassViews> passes;
   const auto& views = track.views;
   for (std::size_t begin = 0, end = 0; begin < views.size(); begin = end) {
-    int nearest = views[begin].keyframe;
+    PassViews pass{views[begin].keyframe, {}};
     double least = std::numeric_limits<double>::max();
     for (end = begin;
          end < views.size() &&
@@ -98,24 +138,61 @@ std::vector<KeyPointId> nearest_views(const JoinedTrack& track,
           (T_map_vehicle[static_cast<std::size_t>(k)].translation() - *track.p_map).norm();
       if (distance >= least) continue;
       least = distance;
-      nearest = k;
+      pass.nearest = k;
     }
     for (std::size_t i = begin; i < end; ++i)
-      if (std::abs(views[i].keyframe - nearest) <= reach_keyframes) kept.push_back(views[i]);
+      if (std::abs(views[i].keyframe - pass.nearest) <= reach_keyframes)
+        pass.views.push_back(views[i]);
+    passes.push_back(std::move(pass));
   }
-  return kept;
+  return passes;
+}
+
+// Candidates of one corner: one in each group of passes that saw it, if not by its first pass alone.
+void add_candidates(std::size_t track,
+                    const std::vector<PassViews>& passes,
+                    const PassGroups& groups,
+                    std::vector<Candidate>& candidates) {
+  std::map<int, std::vector<KeyPointId>> by_group;
+  for (const PassViews& pass : passes) {
+    auto& views = by_group[groups.group_of(pass.nearest)];
+    views.insert(views.end(), pass.views.begin(), pass.views.end());
+  }
+  for (const PassViews& pass : passes)
+    if (const auto next = groups.next_of(pass.nearest))
+      if (const auto found = by_group.find(*next); found != by_group.end())
+        found->second.insert(found->second.end(), pass.views.begin(), pass.views.end());
+  for (auto& [group, views] : by_group) {
+    if (views.size() < 2) continue;
+    std::sort(views.begin(), views.end(), [](const KeyPointId& a, const KeyPointId& b) {
+      return std::tuple(a.keyframe, a.camera) < std::tuple(b.keyframe, b.camera);
+    });
+    candidates.push_back({track, group, std::move(views)});
+  }
+}
+
+std::vector<Candidate> candidates_of(const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                     const std::vector<JoinedTrack>& tracks,
+                                     const PassGroups& groups,
+                                     const BundleStageOptions& options) {
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    if (tracks[i].p_map)
+      add_candidates(i, views_by_pass(tracks[i], T_map_vehicle, options.reach_keyframes), groups,
+                     candidates);
+  return candidates;
 }
 
 // Revisited and long tracks first; before them ground points where only they give the scale.
 std::vector<std::size_t> by_worth(const std::vector<JoinedTrack>& tracks,
-                                  const std::vector<std::vector<KeyPointId>>& views,
+                                  const std::vector<Candidate>& candidates,
                                   const std::vector<std::uint8_t>& gives_scale) {
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < tracks.size(); ++i)
-    if (views[i].size() > 1) order.push_back(i);
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const auto worth = [&](std::size_t i) {
-      return std::tuple(gives_scale[i], tracks[i].revisited, views[i].size());
+    const auto worth = [&](std::size_t c) {
+      return std::tuple(gives_scale[c], tracks[candidates[c].track].revisited,
+                        candidates[c].views.size());
     };
     return worth(a) > worth(b);
   });
@@ -159,41 +236,51 @@ BundleStage make_bundle(const MappingInput& input,
   for (const auto& T : T_map_vehicle) stage.problem.poses.push_back({T, false});
   add_motions(input, options, stage);
 
-  std::vector<std::vector<KeyPointId>> near(tracks.size());
-  for (std::size_t i = 0; i < tracks.size(); ++i)
-    if (tracks[i].p_map) near[i] = nearest_views(tracks[i], T_map_vehicle, options.reach_keyframes);
+  const char* env = std::getenv("RB_PASSES");
+  const int together = env ? std::atoi(env) : options.passes_together;
+  const PassGroups groups(together > 0
+                              ? pass_numbers(input, T_map_vehicle, options.passes)
+                              : std::vector<int>(T_map_vehicle.size(), 0),
+                          together);
+  const auto candidates = candidates_of(T_map_vehicle, tracks, groups, options);
   const auto views = view_from_above(input, T_map_vehicle, tracks, options.ground);
   const double level = ground_level(views, options.ground);
   // Without wheels, the ground is a reference only where the cameras' height above it is known.
-  const auto is_ground = [&](std::size_t i) {
-    if (!on_ground(views[i], level, options.ground)) return false;
+  const auto is_ground = [&](const Candidate& c) {
+    if (!on_ground(views[c.track], level, options.ground) ||
+        !groups.holds(c.group, views[c.track].keyframe))
+      return false;
     const auto session = static_cast<std::size_t>(
-        input.session[static_cast<std::size_t>(tracks[i].views.front().keyframe)]);
+        input.session[static_cast<std::size_t>(tracks[c.track].views.front().keyframe)]);
     return input.has_wheels[session] || known_camera_height(input.half_rigs[session]);
   };
-  std::vector<std::uint8_t> gives_scale(tracks.size(), 0);
-  for (std::size_t i = 0; i < tracks.size(); ++i)
-    gives_scale[i] =
-        is_ground(i) &&
-        (!input.has_wheels[static_cast<std::size_t>(
-             input.session[static_cast<std::size_t>(tracks[i].views.front().keyframe)])] ||
-         lacks_wheels(input, views[i].keyframe));
+  std::vector<std::uint8_t> gives_scale;
+  for (const Candidate& c : candidates)
+    gives_scale.push_back(
+        is_ground(c) &&
+        (!input.has_wheels[static_cast<std::size_t>(input.session[static_cast<std::size_t>(
+             tracks[c.track].views.front().keyframe)])] ||
+         lacks_wheels(input, views[c.track].keyframe)));
   Quota quota(input, options.per_image);
   std::vector<std::size_t> chosen;
-  for (const std::size_t i : by_worth(tracks, near, gives_scale))
-    if (quota.take(near[i])) chosen.push_back(i);
+  std::vector<bool> taken(tracks.size(), false);
+  for (const std::size_t c : by_worth(tracks, candidates, gives_scale)) {
+    if (taken[candidates[c].track] || !quota.take(candidates[c].views)) continue;
+    taken[candidates[c].track] = true;
+    chosen.push_back(c);
+  }
   std::sort(chosen.begin(), chosen.end());
 
-  for (const std::size_t i : chosen) {
-    const JoinedTrack& track = tracks[i];
+  for (const std::size_t c : chosen) {
+    const Candidate& candidate = candidates[c];
     const int point = static_cast<int>(stage.problem.points.size());
     BundlePoint p;
-    p.p_map = *track.p_map;
-    p.ground = is_ground(i);
-    p.ground_pose = p.ground ? views[i].keyframe : -1;
+    p.p_map = *tracks[candidate.track].p_map;
+    p.ground = is_ground(candidate);
+    p.ground_pose = p.ground ? views[candidate.track].keyframe : -1;
     stage.problem.points.push_back(p);
-    stage.track_of_point.push_back(static_cast<int>(i));
-    for (const auto& view : near[i])
+    stage.track_of_point.push_back(static_cast<int>(candidate.track));
+    for (const auto& view : candidate.views)
       stage.problem.observations.push_back(
           {view.keyframe, point,
            stage.camera_base[static_cast<std::size_t>(

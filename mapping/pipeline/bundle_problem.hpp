@@ -7,6 +7,7 @@
 #include "mapping/joined_tracks.hpp"
 #include "mapping/optimisation/bundle_adjustment.hpp"
 #include "mapping/pipeline/ground.hpp"
+#include "mapping/pipeline/pass_numbers.hpp"
 
 namespace roadbook {
 
@@ -20,6 +21,11 @@ struct BundleStageOptions {
   /// after the keyframe nearest to it. More would couple all poses with each other and cost time
   /// (docs/results/speed.md).
   int reach_keyframes = 20;
+  /// Passes over one place are taken in groups of so many, in the order in which they were driven.
+  /// The last pass of a group is the first one of the next, and a track takes part with the key
+  /// points of one group: the cost is linear in the passes. At least 2; 0: all passes together.
+  int passes_together = 4;
+  PlacePassOptions passes;
   double feature_sigma_px = 0.6;     ///< of a key point, half-size image
   double wheel_scale_sigma = 0.005;  ///< prior of the factor on the wheels' distance
   double ground_sigma_m = 0.02;

@@ -1,14 +1,8 @@
 #include "mapping/pipeline/revisit_matching.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 
-#include "base/cell_grid.hpp"
 #include "base/parallel.hpp"
-#include "base/se3.hpp"
-#include "mapping/loops/loop_closure.hpp"
-#include "mapping/travelled.hpp"
 #include "vo/feature_grid.hpp"
 #include "vo/triangulation.hpp"
 
@@ -19,27 +13,15 @@ namespace {
 std::vector<int> nearest_earlier(const MappingInput& input,
                                  const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                                  const std::vector<int>& component,
-                                 const RevisitOptions& options) {
-  const auto& keyframes = input.odometry.keyframes;
-  const auto segments = segments_of(keyframes);
-  const auto travelled_m = travelled_distances(input, T_map_vehicle);
-  CellGrid<int> earlier(options.radius_m);
-  std::vector<int> nearest(keyframes.size(), -1);
-  for (std::size_t k = 0; k < keyframes.size(); ++k) {
-    const Eigen::Vector3d p = T_map_vehicle[k].translation();
-    double best = options.radius_m;
-    earlier.visit_near(p.head<2>(), [&](int other) {
-      const auto o = static_cast<std::size_t>(other);
-      if (component[o] != component[k]) return;
-      if (segments[o] == segments[k] && travelled_m[k] - travelled_m[o] < options.min_travel_m)
-        return;
-      const Eigen::Isometry3d T = T_map_vehicle[o].inverse() * T_map_vehicle[k];
-      if (std::abs(heading_of(T)) > options.heading_rad || !(T.translation().norm() < best)) return;
-      best = T.translation().norm();
-      nearest[k] = other;
-    });
-    earlier.insert(p.head<2>(), static_cast<int>(k));
-  }
+                                 const PlacePassOptions& options) {
+  std::vector<int> nearest(component.size(), -1);
+  std::vector<double> least(component.size(), options.radius_m);
+  visit_earlier_passes(input, T_map_vehicle, options,
+                       [&](std::size_t k, std::size_t earlier, double distance) {
+                         if (component[earlier] != component[k] || !(distance < least[k])) return;
+                         least[k] = distance;
+                         nearest[k] = static_cast<int>(earlier);
+                       });
   return nearest;
 }
 
@@ -102,7 +84,7 @@ std::vector<TrackMatch> match_revisits(const MappingInput& input,
                                        const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                                        const std::vector<int>& component,
                                        const RevisitOptions& options) {
-  const auto nearest = nearest_earlier(input, T_map_vehicle, component, options);
+  const auto nearest = nearest_earlier(input, T_map_vehicle, component, options.passes);
   TriangulationOptions triangulation;
   triangulation.num_threads = options.num_threads;
   const auto places = triangulate_odometry_tracks(input, T_map_vehicle, triangulation);

@@ -3,16 +3,15 @@
 #include <vector>
 
 #include "mapping/joined_tracks.hpp"
+#include "mapping/pipeline/pass_numbers.hpp"
 
 namespace roadbook {
 
 struct RevisitOptions {
-  double radius_m = 2.5;       ///< between two poses that see the same place
-  double heading_rad = 0.7;    ///< between their headings
-  double min_travel_m = 10.0;  ///< driven between them, if no gap lies between them
-  double search_px = 5.0;      ///< around the predicted pixel, half-size image
-  int max_hamming = 90;        ///< of 512 bits
-  double max_ratio = 0.9;      ///< nearest over second-nearest descriptor distance
+  PlacePassOptions passes;      ///< when two poses see the same place
+  double search_px = 5.0;  ///< around the predicted pixel, half-size image
+  int max_hamming = 90;    ///< of 512 bits
+  double max_ratio = 0.9;  ///< nearest over second-nearest descriptor distance
   int num_threads = 0;
 };
 

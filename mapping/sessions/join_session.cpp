@@ -85,7 +85,7 @@ std::vector<TrackMatch> matches_of_localisation(const MappingInput& drive,
 }
 
 // For each keyframe of the session the nearest one of the map with a similar heading; -1: none.
-std::vector<int> nearest_of_map(const JoinedSession& joined, const RevisitOptions& options) {
+std::vector<int> nearest_of_map(const JoinedSession& joined, const PlacePassOptions& options) {
   CellGrid<int> grid(options.radius_m);
   for (std::size_t k = 0; k < joined.first_keyframe; ++k)
     grid.insert(joined.T_map_vehicle[k].translation().head<2>(), static_cast<int>(k));
@@ -121,7 +121,7 @@ std::vector<TrackMatch> matches_in_map_images(const JoinedSession& joined,
     places[at(first_track) + t] =
         triangulate_key_points(joined.input, joined.T_map_vehicle, views, options.triangulation);
   });
-  const auto nearest = nearest_of_map(joined, options.revisits);
+  const auto nearest = nearest_of_map(joined, options.revisits.passes);
   std::vector<std::vector<TrackMatch>> found(nearest.size());
   parallel_for(nearest.size(), options.num_threads, [&](std::size_t i) {
     if (nearest[i] >= 0)

@@ -87,6 +87,29 @@ TEST(SimulatedAgain, ShowsABiasAndThatTheExtendedModelHasIt) {
   EXPECT_LT(reckoned->stated.second.mean, 0.5 * reckoned->recorded.mean);
 }
 
+// Poses off by decimetres for a second: the comparison still shows which sensor errs.
+TEST(SimulatedAgain, ShowsTheGyrosBiasAgainstPosesThatSlideSideways) {
+  MotionStreams streams = test::PlanarCar(13).record({});
+  for (GyroSample& g : streams.gyro) g.rate_rad_s += 0.01;
+  std::mt19937 draw(5);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  const double keep = std::exp(-0.1);
+  double x = 0.25 * normal(draw), y = 0.25 * normal(draw);
+  for (PoseSample& pose : streams.poses) {
+    x = keep * x + 0.25 * std::sqrt(1.0 - keep * keep) * normal(draw);
+    y = keep * y + 0.25 * std::sqrt(1.0 - keep * keep) * normal(draw);
+    pose.x += x;
+    pose.y += y;
+  }
+  DiagnosisOptions options;
+  options.compare = true;
+  const Diagnosis d = diagnose(streams, "drive", options);
+  for (const StreamComparison& c : d.simulated) {
+    if (c.channel == "yaw_rate") EXPECT_NEAR(c.recorded.mean, 0.573, 0.1);
+    if (c.channel == "heading" && c.stream == "wheels0") EXPECT_NEAR(c.recorded.mean, 0.0, 0.1);
+  }
+}
+
 TEST(SimulatedAgain, OfASoundCarIsTheSameDistributionAndTheSameBytesTwice) {
   const MotionStreams streams = test::PlanarCar(12).record({});
   DiagnosisOptions options;

@@ -57,6 +57,38 @@ TEST(StatedMounting, FrictionIsReadOnTheVehiclesClock) {
   EXPECT_EQ(i, kFrames);
 }
 
+// The tables of both cameras are late by a quarter of a second; the offset takes it off.
+TEST(StatedMounting, ImagesAreReadOnTheSharedClock) {
+  const TemporaryFolder folder;
+  const auto d = write_small_drive(folder.path() / "d");
+  for (const char* const camera : {"cam0", "cam1"}) {
+    const fs::path yaml = d / camera / "sensor.yaml";
+    std::string text = read_text(yaml);
+    if (const auto at = text.find("time_offset"); at != std::string::npos)
+      text.erase(at, text.find('\n', at) + 1 - at);
+    write_text(yaml, text + "time_offset: -0.25\n");
+    std::string late;
+    std::istringstream rows(read_text(d / camera / "data.csv"));
+    for (std::string row; std::getline(rows, row);) {
+      const auto comma = row.find(',');
+      late += row.front() == '#' ? row
+                                 : std::to_string(std::stoll(row.substr(0, comma)) + kLateNs) +
+                                       row.substr(comma);
+      late += '\n';
+    }
+    write_text(d / camera / "data.csv", late);
+  }
+  const Drive drive = Drive::open(d);
+  ASSERT_EQ(drive.frame_count(), static_cast<std::size_t>(kFrames));
+  for (std::size_t i = 0; i < drive.frame_count(); ++i) {
+    const std::int64_t true_ns = kStart + static_cast<std::int64_t>(i) * kFrame;
+    EXPECT_EQ(drive.frame_stamp_ns(i), true_ns);
+    EXPECT_EQ(drive.written_stamp_ns(i, 1), true_ns + kLateNs);
+    EXPECT_TRUE(fs::exists(drive.image_path(i, 1))) << drive.image_path(i, 1);
+    EXPECT_FALSE(drive.read_image(i, 0).empty());
+  }
+}
+
 // The poses belong to another body, 1.5 m ahead and turned to the left, with a late clock.
 TEST(StatedMounting, ReferencePosesOfAnotherBodyBecomeThoseOfTheVehicle) {
   const TemporaryFolder folder;

@@ -66,6 +66,25 @@ TEST(MotionDoubts, NameTheSensorWithTheSizeAndItsSign) {
   }
 }
 
+// The poses carry the stamps of late images; a model that knows it leaves nothing, without a gyro too.
+TEST(MotionDoubts, OfImagesThatTheModelKnowsToBeLateSayNothingOfTheWheels) {
+  for (const bool with_gyro : {true, false}) {
+    const test::TemporaryFolder folder;
+    Mapped m = mapped(drive_with("", 0.0, 1), folder.path() / "drive");
+    if (!with_gyro) {
+      std::filesystem::remove_all(folder.path() / "drive/imu0");
+      m.drive = Drive::open(folder.path() / "drive");
+      m.map.sessions[0].drive_digest = m.drive.digest();
+    }
+    for (Keyframe& keyframe : m.map.keyframes) keyframe.t_ns += 100'000'000;
+    for (const Problem& p : motion_doubts(m.map, m.drive, {{"cam.latency", 0.1}}))
+      ADD_FAILURE() << to_line(p);
+    const auto doubts = motion_doubts(m.map, m.drive, {});
+    for (const Problem& p : doubts)
+      EXPECT_NE(p.got.find("looks the same"), std::string::npos) << to_line(p);
+  }
+}
+
 TEST(MotionDoubts, OfASoundDriveOrAnotherDriveSayNothing) {
   for (std::uint64_t i = 0; i < 6; ++i) {
     const test::TemporaryFolder folder;

@@ -13,6 +13,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kSureNats = 10.0;  // odds of 22,000
+constexpr double kSureP = 1e-4;
 
 int digits_for(double error) {
   if (!(error > 0.0) || !std::isfinite(error)) return 3;
@@ -121,7 +122,8 @@ std::string listed(const std::vector<std::string>& names, const char* last = " a
 }
 
 std::string certainty_of(const FoundCause& c, bool of_log) {
-  if (c.inseparable.empty()) return c.evidence >= kSureNats && c.gain.low > 0.0 ? "sure" : "likely";
+  if (c.inseparable.empty())
+    return c.evidence >= kSureNats && c.gain.low > 0.0 && c.p <= kSureP ? "sure" : "likely";
   std::vector<std::string> nouns;
   for (const std::string& other : c.inseparable) nouns.push_back(noun_of(other, of_log));
   return "sure that something is wrong; in this drive, an error of " + listed(nouns, " or ") +

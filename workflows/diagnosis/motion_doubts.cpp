@@ -25,26 +25,36 @@ std::vector<TimedPose> poses_of_session(const Map& map, int session) {
   return poses;
 }
 
-// The radius of both wheels is the map's scale. An effect that other names explain as well is a
-// question for a diagnosis, not for one line.
+// The radius of both wheels is the map's scale. An effect that the map or several other names explain
+// as well is a question for a diagnosis, not for one line.
 bool is_sure(const FoundCause& c) {
   constexpr double kLeastNats = 50.0;
+  constexpr double kMostP = 1e-4;
   const bool of_motion = c.effect.starts_with("wheels0.") || c.effect.starts_with("steering0.") ||
                          c.effect.starts_with("imu0.");
   return of_motion && c.effect != "wheels0.radius" && !c.noise && !c.in_place &&
-         c.inseparable.size() < 2 && c.evidence >= kLeastNats;
+         c.p <= kMostP && c.evidence >= kLeastNats && c.inseparable.size() < 2 &&
+         std::none_of(c.inseparable.begin(), c.inseparable.end(), [](const std::string& other) {
+           return other.starts_with("map.");
+         });
 }
 
-Problem doubt(const Drive& drive, const FoundCause& cause, const Advice& words) {
+Problem doubt(const Drive& drive,
+              const FoundCause& cause,
+              const Advice& words,
+              const EffectSizes& known) {
   const std::size_t point = cause.effect.find('.');
   const std::string stream = cause.effect.substr(0, point);
   std::string fault = words.fault;
   if (!fault.empty()) fault[0] = static_cast<char>(std::tolower(fault[0]));
+  std::string size = words.size;
+  if (known.contains(cause.effect)) size += " in addition to the model";
+  if (!cause.inseparable.empty()) size += "; " + words.certainty;
   return {Severity::kWarning,
           (drive.folder() / (stream == "steering0" ? "wheels0" : stream)).string(),
           0,
           cause.effect.substr(point + 1),
-          "readings that contradict the images: " + fault + ", " + words.size,
+          "readings that contradict the images: " + fault + ", " + size,
           "the values of its sensor.yaml; `roadbook diagnose` with this map shows the evidence"};
 }
 
@@ -64,7 +74,8 @@ std::vector<Problem> motion_doubts(const Map& map, const Drive& drive, const Eff
   options.library.without = {"map.scale", "map.bend"};
   options.known = model;
   std::erase_if(options.known, [](const auto& effect) {
-    return effect.first.starts_with("cam") || effect.first.starts_with("map.");
+    const bool of_images = effect.first.starts_with("cam") && effect.first != "cam.latency";
+    return of_images || effect.first.starts_with("map.");
   });
   Diagnosis d;
   try {
@@ -78,7 +89,7 @@ std::vector<Problem> motion_doubts(const Map& map, const Drive& drive, const Eff
     if (!is_sure(c)) continue;
     const auto of_cause = std::find_if(words.begin(), words.end(),
                                        [&](const Advice& a) { return a.effect == c.effect; });
-    if (of_cause != words.end()) doubts.push_back(doubt(drive, c, *of_cause));
+    if (of_cause != words.end()) doubts.push_back(doubt(drive, c, *of_cause, options.known));
   }
   return doubts;
 }

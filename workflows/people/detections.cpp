@@ -70,14 +70,18 @@ std::vector<SessionSightings> by_session(const Map& map,
     if (!known) throw InvalidOption("--observed", name, "the name of a session of the map");
     (void)sightings_of(all, name);
   }
-  for (const Detection& row : detections) {
+  for (Detection row : detections) {
     const auto session = std::find_if(
-        map.sessions.begin(), map.sessions.end(),
-        [&](const Session& one) { return row.t_ns >= one.t_begin_ns && row.t_ns <= one.t_end_ns; });
-    if (session == map.sessions.end())
+        map.sessions.begin(), map.sessions.end(), [&](const Session& one) {
+          const std::int64_t t_ns = row.t_ns + image_offset_ns(one.rig);
+          return t_ns >= one.t_begin_ns && t_ns <= one.t_end_ns;
+        });
+    if (session == map.sessions.end()) {
       ++without_session;
-    else
-      sightings_of(all, session->name).detections.push_back(row);
+      continue;
+    }
+    row.t_ns += image_offset_ns(session->rig);
+    sightings_of(all, session->name).detections.push_back(row);
   }
   sort_by_time(all);
   return all;

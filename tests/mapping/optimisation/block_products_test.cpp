@@ -38,16 +38,25 @@ TEST(BlockProducts, OuterProductsAreTheSumsInOrderToTheLastBit) {
   EXPECT_EQ(C, expected);
 }
 
-TEST(BlockProducts, AColumnIsTakenOffTheBlocksItsRowsSay) {
-  const std::vector<double> L = any_values(3 * 36, 4);  // rows 2, 5, 6 of column k
-  const std::array<int, 3> rows{2, 5, 6};
-  const std::array<std::size_t, 7> place{9, 9, 1, 9, 9, 3, 0};
-  std::vector<double> blocks = any_values(4 * 36, 5);
+// Two columns of rows 2, 5, 6, of which the first two are columns of the target, with rows 2, 5, 6, 7.
+TEST(BlockProducts, APanelIsTakenOffTheBlocksItsRowsSay) {
+  const std::vector<double> L = any_values(2 * 3 * 36, 4);
+  const std::array<const double*, 2> source{L.data(), L.data() + 3 * 36};
+  const std::array<std::size_t, 3> place{0, 1, 2};
+  std::vector<double> blocks = any_values(2 * 4 * 36, 5);
   std::vector<double> expected = blocks;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    subtract_plainly(L.data() + 36 * i, L.data(), 6,
-                     expected.data() + 36 * place[static_cast<std::size_t>(rows[i])]);
-  subtract_column({L.data(), rows.data(), rows.size(), place.data(), blocks.data()});
+  const std::array<double*, 2> target{blocks.data(), blocks.data() + 4 * 36};
+  for (std::size_t j = 0; j < 2; ++j)
+    for (std::size_t i = j; i < 3; ++i)
+      for (std::size_t c = 0; c < 6; ++c)
+        for (std::size_t r = 0; r < 6; ++r) {
+          double sum = 0.0;
+          for (std::size_t k = 0; k < 2; ++k)
+            for (std::size_t t = 0; t < 6; ++t)
+              sum += source[k][36 * i + r + 6 * t] * source[k][36 * j + c + 6 * t];
+          expected[4 * 36 * j + 36 * i + r + 6 * c] -= sum;
+        }
+  subtract_panel({source.data(), 2, 0, 2, 3, place.data(), target.data()});
   EXPECT_EQ(blocks, expected);
 }
 

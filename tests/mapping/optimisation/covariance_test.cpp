@@ -35,15 +35,26 @@ TEST(Covariance, BlockCholeskySolvesAndInvertsAsDenseAlgebraDoes) {
     add(i, i, 100.0 * Matrix6d::Identity());  // dominant: positive definite
   Eigen::VectorXd b(6 * n);
   for (auto& value : b) value = random.normal();
+  BlockCholesky by_one = sparse;
   ASSERT_TRUE(sparse.factor(2));
+  ASSERT_TRUE(by_one.factor(1));
   Eigen::VectorXd x = b;
   sparse.solve(x);
   EXPECT_LT((dense * x - b).norm(), 1e-10 * b.norm());
   const Eigen::MatrixXd inverse = dense.inverse();
-  const std::vector<Matrix6d> diagonal = sparse.inverse_diagonal();
+  const std::vector<Matrix6d> diagonal = sparse.inverse_diagonal(2);
   for (int i = 0; i < n; ++i)
     EXPECT_LT((diagonal[static_cast<std::size_t>(i)] - inverse.block<6, 6>(6 * i, 6 * i)).norm(),
               1e-10 * inverse.norm());
+  for (const auto& [a, c] : pairs) {
+    bool transposed = false;
+    const Matrix6d stored = sparse.block(a, c, transposed);
+    EXPECT_LT(((transposed ? Matrix6d(stored.transpose()) : stored) -
+               inverse.block<6, 6>(6 * a, 6 * c))
+                  .norm(),
+              1e-10 * inverse.norm());
+  }
+  EXPECT_EQ(by_one.inverse_diagonal(1), diagonal);
 }
 
 // Normalised squared errors of the last pose over many draws of the noise: chi-square with 6

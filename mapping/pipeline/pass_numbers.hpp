@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <vector>
+
+#include "mapping/joined_tracks.hpp"
+
+namespace roadbook {
+
+/// When two keyframes see one place in two passes.
+struct PlacePassOptions {
+  double radius_m = 2.5;       ///< between their poses
+  double heading_rad = 0.7;    ///< between their headings
+  double min_travel_m = 10.0;  ///< driven between them, if no gap lies between them
+};
+
+/// Calls `visit(keyframe, earlier, distance_m)` for each pair of keyframes of two passes over one
+/// place, in the order of `keyframe`. Linear in the number of pairs.
+void visit_earlier_passes(const MappingInput& input,
+                          const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                          const PlacePassOptions& options,
+                          const std::function<void(std::size_t, std::size_t, double)>& visit);
+
+/// Number of earlier passes over the place of each keyframe: 0 in the first pass. Neighbouring
+/// places whose passes began at different times may differ.
+[[nodiscard]] std::vector<int> pass_numbers(const MappingInput& input,
+                                            const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                            const PlacePassOptions& options);
+
+}  // namespace roadbook

@@ -1,0 +1,129 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "mapping/pipeline/bundle_problem.hpp"
+#include "mapping/pipeline/pass_numbers.hpp"
+#include "tests/vo/synthetic_views.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr int kLapCount = 11;
+constexpr int kLapSteps = 50;  // keyframes of a lap, one each metre
+constexpr double kRing_m = 8.0;
+
+// A car with four fisheyes that drives round a ring; every corner is one track over all laps.
+struct ManyLaps {
+  MappingInput input;
+  std::vector<Eigen::Isometry3d> poses;
+  std::vector<JoinedTrack> tracks;
+};
+
+ManyLaps drive_many_laps() {
+  Random random(7);
+  ManyLaps laps;
+  const Rig rig = test::fisheye_rig();
+  const auto corners = test::corners_around(18.0, 500, random);
+  laps.input.half_rigs = {rig};
+  laps.input.has_wheels = {true};
+  std::map<std::pair<int, std::size_t>, JoinedTrack> by_corner;
+  for (int k = 0; k < kLapCount * kLapSteps; ++k) {
+    const double radius = kRing_m + random.normal(0.0, 0.2);
+    laps.poses.push_back(test::on_circle(radius, radius * 2.0 * std::numbers::pi * k / kLapSteps));
+    auto view = test::view_from(laps.poses.back(), rig, corners, 9.0, 0.3, random);
+    for (std::size_t c = 0; c < view.corner.size(); ++c)
+      for (std::size_t f = 0; f < view.corner[c].size(); ++f) {
+        const int corner = view.corner[c][f];
+        JoinedTrack& track = by_corner[{corner, c}];
+        track.p_map = corners[static_cast<std::size_t>(corner)].p_world;
+        track.revisited = true;
+        track.views.push_back({k, static_cast<int>(c), static_cast<int>(f)});
+      }
+    VoKeyframe keyframe;
+    keyframe.t_ns = k * 500'000'000LL;
+    keyframe.T_odom_vehicle = laps.poses.back();
+    keyframe.travelled_m = k;
+    keyframe.features = std::move(view.features);
+    laps.input.odometry.keyframes.push_back(std::move(keyframe));
+    laps.input.session.push_back(0);
+  }
+  for (auto& [corner, track] : by_corner) laps.tracks.push_back(std::move(track));
+  return laps;
+}
+
+int lap_of(int keyframe) { return keyframe / kLapSteps; }
+
+// ManyLaps that see each point.
+std::vector<std::set<int>> laps_of_points(const BundleStage& stage) {
+  std::vector<std::set<int>> laps(stage.problem.points.size());
+  for (const BundleObservation& o : stage.problem.observations)
+    laps[static_cast<std::size_t>(o.point)].insert(lap_of(o.pose));
+  return laps;
+}
+
+TEST(PassNumbers, CountTheLapsOfARing) {
+  const ManyLaps laps = drive_many_laps();
+  const std::vector<int> number = pass_numbers(laps.input, laps.poses, {});
+  for (int k = 0; k < kLapCount * kLapSteps; ++k) {
+    const int lap = lap_of(k);
+    // Shortly before its end a lap meets the beginning of the first one.
+    EXPECT_GE(number[static_cast<std::size_t>(k)], lap) << k;
+    EXPECT_LE(number[static_cast<std::size_t>(k)], k % kLapSteps < kLapSteps - 4 ? lap : lap + 1) << k;
+  }
+}
+
+TEST(PassNumbers, OfTheOppositeDirectionAreOfAnotherPlace) {
+  ManyLaps laps = drive_many_laps();
+  for (int k = kLapSteps; k < 2 * kLapSteps; ++k)
+    laps.poses[static_cast<std::size_t>(k)].linear() =
+        laps.poses[static_cast<std::size_t>(k)].linear() *
+        Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const std::vector<int> number = pass_numbers(laps.input, laps.poses, {});
+  EXPECT_EQ(number[kLapSteps + 20], 0);
+  EXPECT_EQ(number[2 * kLapSteps + 20], 1);
+}
+
+TEST(PassGroups, CoupleFourPassesAtMostAndLeaveNoneOut) {
+  const ManyLaps laps = drive_many_laps();
+  const BundleStage stage = make_bundle(laps.input, laps.poses, laps.tracks, {});
+  std::vector<std::set<int>> joined(kLapCount);  // laps that share points with each lap
+  for (const std::set<int>& seen : laps_of_points(stage))
+    for (const int a : seen)
+      for (const int b : seen)
+        if (a != b) joined[static_cast<std::size_t>(a)].insert(b);
+  for (int lap = 0; lap < kLapCount; ++lap) {
+    const std::set<int>& others = joined[static_cast<std::size_t>(lap)];
+    ASSERT_FALSE(others.empty()) << lap;
+    // At the seam of the laps a group may begin one lap earlier.
+    EXPECT_GE(*others.begin(), lap - 4) << lap;
+    EXPECT_LE(*others.rbegin(), lap + 4) << lap;
+    if (lap > 0) {
+      EXPECT_TRUE(others.contains(lap - 1)) << lap;
+    }
+  }
+  std::map<int, int> views;
+  for (const BundleObservation& o : stage.problem.observations) ++views[o.pose];
+  for (int k = 0; k < kLapCount * kLapSteps; ++k) EXPECT_GE(views[k], 20) << k;
+  // A corner is one point.
+  const std::set<int> tracks(stage.track_of_point.begin(), stage.track_of_point.end());
+  EXPECT_EQ(tracks.size(), stage.track_of_point.size());
+  for (const BundlePoint& point : stage.problem.points) EXPECT_TRUE(point.p_map.allFinite());
+}
+
+TEST(PassGroups, TakeAllPassesTogetherWhereTheyAreAsked) {
+  const ManyLaps laps = drive_many_laps();
+  BundleStageOptions options;
+  options.passes_together = 0;
+  const BundleStage stage = make_bundle(laps.input, laps.poses, laps.tracks, options);
+  const auto seen = laps_of_points(stage);
+  EXPECT_GT(std::count_if(seen.begin(), seen.end(),
+                          [](const std::set<int>& s) { return static_cast<int>(s.size()) == kLapCount; }),
+            50);
+}
+
+}  // namespace
+}  // namespace roadbook
