@@ -1,6 +1,8 @@
-"""Breaks an exported file in one named way, so that its checker can be seen to find it.
+"""Breaks an exported file in named ways, so that its checker can be seen to find each.
 
-    break_export.py FILE FAULT OUT
+    break_export.py FILE FOLDER FAULT...
+
+Writes FOLDER/FAULT for each of the faults.
 """
 import copy
 import math
@@ -320,9 +322,10 @@ def cr_hasty(osm):
 
 
 def main():
-    osm = Osm(sys.argv[1])
-    globals()[sys.argv[2]](osm)
-    osm.tree.write(sys.argv[3])
+    for fault in sys.argv[3:]:
+        osm = Osm(sys.argv[1])
+        globals()[fault](osm)
+        osm.tree.write(f"{sys.argv[2]}/{fault}")
 
 
 main()

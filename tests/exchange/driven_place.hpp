@@ -48,8 +48,8 @@ struct DrivenPlace {
 };
 
 /// A small map with the network and the paths of that place; `extra` goes to `map_meta`.
-inline std::filesystem::path map_with_paths(const Folder& folder,
-                                            const std::map<std::string, std::string>& extra = {}) {
+inline std::filesystem::path make_map_with_paths(const Folder& folder,
+                                                 const std::map<std::string, std::string>& extra) {
   const auto path = folder / "place.gpkg";
   const DrivenPlace place;
   MapFileBuilder(path, "key").finish(small_map(1), extra);
@@ -59,6 +59,22 @@ inline std::filesystem::path map_with_paths(const Folder& folder,
   write_path_layers(update, place.paths, place.network, source);
   update.commit();
   return path;
+}
+
+/// Copies a map file to `place.gpkg` in `folder`.
+inline std::filesystem::path copy_of_map(const std::filesystem::path& map, const Folder& folder) {
+  auto copy = folder / "place.gpkg";
+  std::filesystem::copy_file(map, copy, std::filesystem::copy_options::overwrite_existing);
+  return copy;
+}
+
+/// The same, as a copy: without `extra`, the map is made once for all tests of a program.
+inline std::filesystem::path map_with_paths(const Folder& folder,
+                                            const std::map<std::string, std::string>& extra = {}) {
+  if (!extra.empty()) return make_map_with_paths(folder, extra);
+  static const Folder once;
+  static const std::filesystem::path made = make_map_with_paths(once, {});
+  return copy_of_map(made, folder);
 }
 
 }  // namespace roadbook::test

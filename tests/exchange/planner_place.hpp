@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <sstream>
 #include <string>
 #include <utility>
@@ -62,11 +64,18 @@ inline std::vector<Corners> crossings_of_place() {
           {{15.0, -2.0}, {18.0, -2.0}, {18.0, 2.0}, {16.5, 2.4}, {15.0, 2.0}}};
 }
 
-/// A place with speeds, spaces and crossings in its map file.
+/// A place with speeds, spaces and crossings in its map file. The file is a copy of one that is
+/// made once for all tests of a program.
 struct PlannerPlace : Stored {
   PlannerPlace() {
-    add_outlines(map, "parking_spaces", spaces_of_place());
-    add_outlines(map, "crossings", crossings_of_place());
+    static const Folder once;
+    static const std::filesystem::path made = [] {
+      const auto file = copy_of_map(stored_once().map, once);
+      add_outlines(file, "parking_spaces", spaces_of_place());
+      add_outlines(file, "crossings", crossings_of_place());
+      return file;
+    }();
+    copy_of_map(made, folder);
   }
 };
 
@@ -111,6 +120,17 @@ inline void add_random_places(const std::filesystem::path& map,
 /// Runs a Python script of this folder.
 inline std::string run_script(const std::string& command, int* status = nullptr) {
   return output_of("python3 " + (source_tree() / "tests/exchange" / command).string(), status);
+}
+
+/// Breaks an exported file in each of the named ways, with one start of Python: the broken files
+/// lie beside it under the names of their faults.
+inline void break_export(const std::filesystem::path& file,
+                         const std::vector<std::string>& faults) {
+  std::string command = "break_export.py " + file.string() + " " + file.parent_path().string();
+  for (const std::string& fault : faults) command += " " + fault;
+  int status = -1;
+  const std::string said = run_script(command, &status);
+  ASSERT_EQ(status, 0) << said;
 }
 
 /// Lines that begin with a word, without it, split at blanks.

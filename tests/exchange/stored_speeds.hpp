@@ -92,14 +92,14 @@ inline SpeedMap speeds_of(const DrivenPlace& place, const FrictionMap& friction)
   return map;
 }
 
-/// A place with friction and speeds in its map file.
-struct Stored {
+/// A place with friction and speeds in its map file. Made once for all tests of a program.
+struct StoredOnce {
   Folder folder;
   DrivenPlace place;
   std::filesystem::path map;
   FrictionMap friction;
   SpeedMap speeds;
-  Stored()
+  StoredOnce()
       : map(map_with_paths(folder)),
         friction(friction_of(place.paths)),
         speeds(speeds_of(place, friction)) {
@@ -108,6 +108,19 @@ struct Stored {
     write_speed_layers(update, speeds);
     update.commit();
   }
+};
+inline const StoredOnce& stored_once() {
+  static const StoredOnce once;
+  return once;
+}
+
+/// A copy of that place and of its map file, which a test may change.
+struct Stored {
+  Folder folder;
+  DrivenPlace place = stored_once().place;
+  std::filesystem::path map = copy_of_map(stored_once().map, folder);
+  FrictionMap friction = stored_once().friction;
+  SpeedMap speeds = stored_once().speeds;
 };
 
 }  // namespace roadbook::test
