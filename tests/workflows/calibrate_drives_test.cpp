@@ -22,7 +22,9 @@ TEST(CalibrateDrives, FindsAWrongTurnAndRadiusInARenderedDrive) {
   CalibrateRequest request;
   request.drives = {folder.path() / "drive"};
   request.model = folder.path() / "wrong.yaml";
-  ASSERT_EQ(test::simulate_drive("zurich --size small --image-scale 0.5", request.drives[0]).status,
+  ASSERT_EQ(test::simulate_drive("zurich --size small --image-scale 0.5 --max-duration-s 20",
+                                 request.drives[0])
+                .status,
             0);
   test::write_text(request.model, "effects:\n  cam1.rotation: 0.0175\n  wheels0.radius: -0.02\n");
   NoMessages messages;
