@@ -127,7 +127,7 @@ TEST(Robustness, ADamagedDriveMakesARightMapOrNoneOrIsNamed) {
        {"wheels: stuck 2.0 s, both", "wheels: reversed, one", "wheels: radius x 2",
         "camera: turned 2 degrees", "cameras: T_BS inverted", "cameras: 12 bits in 16"})
     faults.push_back(fault_named(name));
-  const RobustnessResult result = study_robustness({}, faults, 1, 0);
+  const RobustnessResult result = study_robustness({.seconds = 20.0}, faults, 1, 0);
   EXPECT_TRUE(result.clean.messages.empty()) << result.clean.messages.front();
   for (const RobustnessRun& run : result.runs) {
     SCOPED_TRACE(run.fault + ": " + name_of(run.outcome));
