@@ -97,7 +97,9 @@ std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const P
     learner->use_prior_of_searches(true);
     PeopleVisit visit;
     visit.visit = v;
-    // The training instants: those with people, and the same number without.
+    // The training instants: those with people, and the same number without. Nobody is searched
+    // with what the last visit teaches, unless there is a held-out visit.
+    const bool learns = held_out || v < options.visits;
     std::vector<PeopleScene::Instant> kept;
     std::size_t empty = 0;
     const double end = std::min(scene.duration_s(), options.max_duration_s);
@@ -113,7 +115,7 @@ std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const P
         visit.frames.push_back(frame_of(people, instant.T_world_vehicle, options.step_s));
       }
       const bool nobody = instant.there.people.empty();
-      if (nobody && empty >= kept.size() - empty) continue;
+      if (!learns || (nobody && empty >= kept.size() - empty)) continue;
       empty += nobody ? 1U : 0U;
       kept.push_back(std::move(instant));
     }

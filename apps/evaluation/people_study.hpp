@@ -12,10 +12,11 @@ namespace roadbook {
 struct PeopleVisit {
   int visit = 0;
   PeopleScore score;  ///< detections with the examples of earlier visits, in range and in sight
-  std::vector<PersonRound> rounds;  ///< of learning, after the detection
-  std::vector<VisitFrame> frames;   ///< detections, world frame
-  double find_s = 0.0;              ///< processor time per instant
-  PeopleScore held_out;             ///< in the held-out visit, including this visit's examples
+  /// Of learning, after the detection; none in the last visit where no held-out visit follows.
+  std::vector<PersonRound> rounds;
+  std::vector<VisitFrame> frames;  ///< detections, world frame
+  double find_s = 0.0;             ///< processor time per instant
+  PeopleScore held_out;            ///< in the held-out visit, including this visit's examples
 };
 
 /// The detector of people over the revisits of `zurich` [metric-semantic maps, section
