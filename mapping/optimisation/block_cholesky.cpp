@@ -247,16 +247,18 @@ void BlockCholesky::solve_in_order(Panel& y) const {
   const auto rows = [&](std::size_t j) {
     return y.middleRows<6>(static_cast<Eigen::Index>(6 * j));
   };
+  const auto columns = static_cast<std::size_t>(y.cols());
   for (std::size_t j = 0; j < size(); ++j) {
     auto y_j = rows(j);
     blocks_[begin_[j]].triangularView<Eigen::Lower>().solveInPlace(y_j);
     for (std::size_t p = begin_[j] + 1; p < begin_[j + 1]; ++p)
-      rows(at(rows_[p])) -= blocks_[p].lazyProduct(y_j);
+      subtract_product(blocks_[p].data(), y_j.data(), columns, rows(at(rows_[p])).data());
   }
   for (std::size_t j = size(); j-- > 0;) {
     auto y_j = rows(j);
     for (std::size_t p = begin_[j] + 1; p < begin_[j + 1]; ++p)
-      y_j -= blocks_[p].transpose().lazyProduct(rows(at(rows_[p])));
+      subtract_transposed_product(blocks_[p].data(), rows(at(rows_[p])).data(), columns,
+                                  y_j.data());
     blocks_[begin_[j]].triangularView<Eigen::Lower>().transpose().solveInPlace(y_j);
   }
 }

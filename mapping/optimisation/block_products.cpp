@@ -55,6 +55,34 @@ template <std::size_t kInner>
   }
 }
 
+// C -= A B of a 6x6 block A, or of its transpose, and six rows.
+template <bool kTransposed>
+[[gnu::always_inline]] inline void subtract_rows(const double* A,
+                                                 const double* B,
+                                                 std::size_t columns,
+                                                 double* C) {
+  const auto a = [A](std::size_t row, std::size_t k) {
+    return kTransposed ? A[k + kSide * row] : A[row + kSide * k];
+  };
+  std::size_t c = 0;
+  for (; c + 4 <= columns; c += 4) {
+    Four b[kSide];
+    for (std::size_t k = 0; k < kSide; ++k)
+      b[k] = *reinterpret_cast<const Four*>(B + columns * k + c);
+    for (std::size_t row = 0; row < kSide; ++row) {
+      Four sum = a(row, 0) * b[0];
+      for (std::size_t k = 1; k < kSide; ++k) sum += a(row, k) * b[k];
+      *reinterpret_cast<Four*>(C + columns * row + c) -= sum;
+    }
+  }
+  for (; c < columns; ++c)
+    for (std::size_t row = 0; row < kSide; ++row) {
+      double sum = a(row, 0) * B[c];
+      for (std::size_t k = 1; k < kSide; ++k) sum += a(row, k) * B[columns * k + c];
+      C[columns * row + c] -= sum;
+    }
+}
+
 }  // namespace
 
 ROADBOOK_CLONES void subtract_panel(const PanelUpdate& update) {
@@ -95,6 +123,20 @@ ROADBOOK_CLONES void add_symmetric(const SymmetricProduct& product) {
 
 ROADBOOK_CLONES void subtract_outer_63(const double* A, const double* B, double* C) {
   subtract_outer<3>(A, B, C);
+}
+
+ROADBOOK_CLONES void subtract_product(const double* A,
+                                      const double* B,
+                                      std::size_t columns,
+                                      double* C) {
+  subtract_rows<false>(A, B, columns, C);
+}
+
+ROADBOOK_CLONES void subtract_transposed_product(const double* A,
+                                                 const double* B,
+                                                 std::size_t columns,
+                                                 double* C) {
+  subtract_rows<true>(A, B, columns, C);
 }
 
 }  // namespace roadbook

@@ -35,4 +35,9 @@ void add_symmetric(const SymmetricProduct& product);
 /// C -= A B^T for 6x3 blocks A and B.
 void subtract_outer_63(const double* A, const double* B, double* C);
 
+/// C -= A B, and C -= A^T B, for a 6x6 block A and six rows of `columns` values each, stored row by
+/// row.
+void subtract_product(const double* A, const double* B, std::size_t columns, double* C);
+void subtract_transposed_product(const double* A, const double* B, std::size_t columns, double* C);
+
 }  // namespace roadbook

@@ -38,6 +38,27 @@ TEST(BlockProducts, OuterProductsAreTheSumsInOrderToTheLastBit) {
   EXPECT_EQ(C, expected);
 }
 
+// Also where the columns are no multiple of what a machine computes at once.
+TEST(BlockProducts, ProductsWithRowsAreTheSumsInOrderToTheLastBit) {
+  for (const std::size_t columns : {1U, 7U, 16U})
+    for (const bool transposed : {false, true}) {
+      const std::vector<double> A = any_values(36, 6);
+      const std::vector<double> B = any_values(6 * columns, 7);
+      std::vector<double> C = any_values(6 * columns, 8);
+      std::vector<double> expected = C;
+      for (std::size_t row = 0; row < 6; ++row)
+        for (std::size_t c = 0; c < columns; ++c) {
+          double sum = 0.0;
+          for (std::size_t k = 0; k < 6; ++k)
+            sum += (transposed ? A[k + 6 * row] : A[row + 6 * k]) * B[columns * k + c];
+          expected[columns * row + c] -= sum;
+        }
+      (transposed ? subtract_transposed_product : subtract_product)(A.data(), B.data(), columns,
+                                                                    C.data());
+      EXPECT_EQ(C, expected) << columns << (transposed ? ", transposed" : "");
+    }
+}
+
 // Two columns of rows 2, 5, 6, of which the first two are columns of the target, with rows 2, 5, 6, 7.
 TEST(BlockProducts, APanelIsTakenOffTheBlocksItsRowsSay) {
   const std::vector<double> L = any_values(2 * 3 * 36, 4);
