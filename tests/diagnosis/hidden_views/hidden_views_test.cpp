@@ -114,11 +114,10 @@ TEST(LargeHiddenViews, ABendOfTheGroundIsOneLineBesideALargeCause) {
   }
 }
 
-// A line far from the true one explains nearly as much of how the car climbs: these were found 13,
-// 23 and 2 degrees off (three crossings), with sizes too small by 12, 21 and 23 %.
+// A line far from the true one explains nearly as much of how the car climbs: these were found 23
+// and 2 degrees off (three crossings), with sizes too small by 21 and 23 %.
 TEST(LargeHiddenViews, ABendIsFoundInItsLineWhereAnotherClimbsAlmostAlike) {
-  for (const auto& [seed, size] : {std::pair<std::uint64_t, double>(4829395834465350844U, -0.05118),
-                                   {31516197717659162U, -0.04905},
+  for (const auto& [seed, size] : {std::pair<std::uint64_t, double>(31516197717659162U, -0.04905),
                                    {1065094214146828621U, 0.01897}}) {
     const Folder folder;
     HiddenViewOptions hidden = short_drive(seed, {{"ground.hinge", size}});
@@ -187,19 +186,16 @@ TEST(HiddenViews, NamesNothingWhereNothingIsHidden) {
 
 // The car rocks on its springs with wavelengths of 2 to 12 m, as long as a hinge takes to cross.
 TEST(HiddenViews, SwayOfTheCarIsNoBendOfTheGround) {
-  for (const std::uint64_t seed : {8228641367508105764U, 160732330834279909U}) {
-    HiddenViewOptions hidden = short_drive(seed);
+  const auto found = [](std::uint64_t seed, const Secret& secret) {
+    HiddenViewOptions hidden = short_drive(seed, secret);
     hidden.length_m = 120.0;
     hidden.outliers = 0.0;
     const Folder folder;
-    const ViewOutcome o = run_hidden_views(hidden, folder / "views");
-    EXPECT_TRUE(o.found.causes.empty() && o.found.unknown.empty()) << o.to_line();
-  }
-  HiddenViewOptions hidden = short_drive(598215494964371429U, {{"ground.hinge", 0.04794}});
-  hidden.length_m = 120.0;
-  hidden.outliers = 0.0;
-  const Folder folder;
-  const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+    return run_hidden_views(hidden, folder / "views");
+  };
+  const ViewOutcome none = found(8228641367508105764U, {});
+  EXPECT_TRUE(none.found.causes.empty() && none.found.unknown.empty()) << none.to_line();
+  const ViewOutcome o = found(598215494964371429U, {{"ground.hinge", 0.04794}});
   ASSERT_EQ(o.found.causes.size(), 1U) << o.to_line();
   EXPECT_NEAR(o.found.causes[0].size, 0.04794, 3.0 * sigma_of(o.found.causes[0])) << o.to_line();
 }
@@ -228,7 +224,7 @@ TEST(HiddenViews, ANameInPlaceOfTheTrueOneIsDoubtedByWhatItsSizeDependsOn) {
                                    {"wheels0.slip_acceleration", -0.0062}}) {
     const Folder folder;
     HiddenViewOptions hidden = short_drive(7, {{name, size}});
-    hidden.length_m = 120.0;
+    hidden.length_m = 80.0;
     const ViewOutcome wrong = run_hidden_views(hidden, folder / "views", {name});
     ASSERT_FALSE(wrong.found.causes.empty()) << wrong.to_line();
     EXPECT_FALSE(wrong.found.unexplained.empty() && wrong.found.unknown.empty()) << wrong.to_line();
