@@ -55,6 +55,16 @@ ROADBOOK_CLONES void add_octave(const float* x,
   for (std::size_t i = 0; i < count; ++i) sum[i] += size * noise_at(fine * x[i], y, seed);
 }
 
+ROADBOOK_CLONES void add_octave_at(const float* x,
+                                   const float* y,
+                                   std::size_t count,
+                                   float fine,
+                                   float size,
+                                   std::uint32_t seed,
+                                   float* sum) {
+  for (std::size_t i = 0; i < count; ++i) sum[i] += size * noise_at(fine * x[i], fine * y[i], seed);
+}
+
 }  // namespace
 
 float value_noise(float x, float y, std::uint32_t seed) { return noise_at(x, y, seed); }
@@ -84,6 +94,22 @@ void fractal_noise_row(
   for (int i = 0; i < octaves; ++i) {
     add_octave(x.data(), x.size(), fine, fine * y, size,
                seed + static_cast<std::uint32_t>(i) * 101U, out.data());
+    fine *= 2.0F;
+    size *= 0.5F;
+  }
+}
+
+void fractal_noise_at(std::span<const float> x,
+                      std::span<const float> y,
+                      int octaves,
+                      std::uint32_t seed,
+                      std::span<float> out) {
+  std::fill(out.begin(), out.end(), 0.0F);
+  float fine = 1.0F;
+  float size = 0.5F;
+  for (int i = 0; i < octaves; ++i) {
+    add_octave_at(x.data(), y.data(), x.size(), fine, size,
+                  seed + static_cast<std::uint32_t>(i) * 101U, out.data());
     fine *= 2.0F;
     size *= 0.5F;
   }

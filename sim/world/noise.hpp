@@ -18,5 +18,11 @@ namespace roadbook {
 void value_noise_row(std::span<const float> x, float y, std::uint32_t seed, std::span<float> out);
 void fractal_noise_row(
     std::span<const float> x, float y, int octaves, std::uint32_t seed, std::span<float> out);
+/// The same for positions with a y each.
+void fractal_noise_at(std::span<const float> x,
+                      std::span<const float> y,
+                      int octaves,
+                      std::uint32_t seed,
+                      std::span<float> out);
 
 }  // namespace roadbook

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "sim/world/noise.hpp"
 #include "sim/world/noise_row.hpp"
@@ -186,16 +187,28 @@ cv::Mat paint_sky(Random& random) {
   constexpr int kHigh = 1024;
   cv::Mat sky(kHigh, kWide, CV_8UC1);
   const auto seed = static_cast<std::uint32_t>(random());
-  for (int y = 0; y < kHigh; ++y)
-    for (int x = 0; x < kWide; ++x) {
-      const double a = x * 2.0 * M_PI / kWide;
-      const double e = 0.5 * M_PI * y / kHigh;
-      const double r = 3.0 / (0.25 + e);
-      const float cloud = fractal_noise(static_cast<float>(r * std::cos(a) + 50.0),
-                                        static_cast<float>(r * std::sin(a) + 50.0), 5, seed);
-      sky.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(
-          200.0 + 30.0 * e / 1.57 + 60.0 * static_cast<double>(cloud));
+  std::vector<double> cosine(kWide);
+  std::vector<double> sine(kWide);
+  for (std::size_t x = 0; x < kWide; ++x) {
+    const double a = static_cast<double>(x) * 2.0 * M_PI / kWide;
+    cosine[x] = std::cos(a);
+    sine[x] = std::sin(a);
+  }
+  std::vector<float> u(kWide);
+  std::vector<float> v(kWide);
+  std::vector<float> cloud(kWide);
+  for (int y = 0; y < kHigh; ++y) {
+    const double e = 0.5 * M_PI * y / kHigh;
+    const double r = 3.0 / (0.25 + e);
+    for (std::size_t x = 0; x < kWide; ++x) {
+      u[x] = static_cast<float>(r * cosine[x] + 50.0);
+      v[x] = static_cast<float>(r * sine[x] + 50.0);
     }
+    fractal_noise_at(u, v, 5, seed, cloud);
+    for (std::size_t x = 0; x < kWide; ++x)
+      sky.at<std::uint8_t>(y, static_cast<int>(x)) = cv::saturate_cast<std::uint8_t>(
+          200.0 + 30.0 * e / 1.57 + 60.0 * static_cast<double>(cloud[x]));
+  }
   for (int x = 0; x < kWide;) {  // houses and trees on the horizon
     const int wide = 20 + static_cast<int>(random.below(90));
     const int high = 8 + static_cast<int>(random.below(45));

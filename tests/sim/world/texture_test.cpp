@@ -93,6 +93,9 @@ TEST(Noise, RowsAreTheSameBitsAsPlaces) {
     value_noise_row(x, y, 9U, row);
     for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(row[i], value_noise(x[i], y, 9U));
   }
+  const std::vector<float> back(x.rbegin(), x.rend());
+  fractal_noise_at(x, back, 5, 7U, row);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(row[i], fractal_noise(x[i], back[i], 5, 7U));
 }
 
 TEST(Noise, IsSmoothAndKeepsItsRange) {
