@@ -84,7 +84,7 @@ std::size_t fixes(const std::vector<Driven>& driven) {
 // a drive count, when the localiser knows the noise of the place; frames of one drive see the same
 // landmarks, so each drive counts once in the bounds (3 standard errors).
 TEST(Localiser, CovariancesHoldOverManyDrives) {
-  constexpr int kDrives = 50;
+  constexpr int kDrives = 25;
   constexpr std::size_t kUsed = 5;
   double nees = 0.0;
   double in_ellipse = 0.0;
