@@ -182,7 +182,7 @@ TEST(BundleAdjustment, BothSolversFindTheSameMinimum) {
   for (const RobustLoss loss : {RobustLoss::kNone, RobustLoss::kHuber, RobustLoss::kCauchy}) {
     SCOPED_TRACE(static_cast<int>(loss));
     SyntheticBundle own =
-        test::synthetic_bundle({.length_m = 60.0, .point_count = 800, .wheel_error = 0.01}, 8);
+        test::synthetic_bundle({.length_m = 40.0, .point_count = 400, .wheel_error = 0.01}, 8);
     Random random(8, "outliers");
     for (BundleObservation& o : own.problem.observations)
       if (random.uniform() < 0.02) o.pixel.x() += random.uniform(-20.0, 20.0);
