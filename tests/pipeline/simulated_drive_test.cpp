@@ -58,7 +58,7 @@ fs::path linked_copy(const fs::path& drive, const fs::path& copy) {
   return copy;
 }
 
-std::string text_of(const fs::path& file) {
+std::string whole_text_of(const fs::path& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -66,7 +66,7 @@ std::string text_of(const fs::path& file) {
 // Changes the calibration of `copy`: the wheels become 1 % too large.
 void enlarge_wheels(const fs::path& copy) {
   const auto file = copy / "wheels0" / "sensor.yaml";
-  std::string text = text_of(file);
+  std::string text = whole_text_of(file);
   for (const std::string key : {"wheel_radius_left: ", "wheel_radius_right: "}) {
     const auto begin = text.find(key);
     ASSERT_NE(begin, std::string::npos);
@@ -82,7 +82,7 @@ void enlarge_wheels(const fs::path& copy) {
 void misstate_lenses_and_clock(const fs::path& copy) {
   for (const std::string camera : {"cam0", "cam1", "cam2", "cam3"}) {
     const auto file = copy / camera / "sensor.yaml";
-    std::string text = text_of(file);
+    std::string text = whole_text_of(file);
     const auto begin = text.find("intrinsics: [") + 13;
     std::istringstream numbers(text.substr(begin, text.find(']', begin) - begin));
     double fu = 0.0;
@@ -94,7 +94,7 @@ void misstate_lenses_and_clock(const fs::path& copy) {
     std::ofstream(file) << text;
   }
   const auto file = copy / "wheels0" / "data.csv";
-  std::istringstream rows(text_of(file));
+  std::istringstream rows(whole_text_of(file));
   std::string row;
   std::getline(rows, row);
   std::string late = row + '\n';
@@ -109,7 +109,7 @@ void misstate_lenses_and_clock(const fs::path& copy) {
 // Removes the second half of the rows in the table of the camera.
 void kill_camera(const fs::path& copy, const std::string& camera) {
   const auto file = copy / camera / "data.csv";
-  const std::string text = text_of(file);
+  const std::string text = whole_text_of(file);
   std::ofstream(file) << text.substr(0, text.find('\n', text.size() / 2) + 1);
 }
 
@@ -159,7 +159,7 @@ void shorten(const fs::path& copy, double share) {
   for (const auto& sensor : fs::directory_iterator(copy)) {
     const auto file = sensor.path() / "data.csv";
     if (!fs::exists(file)) continue;
-    const std::string text = text_of(file);
+    const std::string text = whole_text_of(file);
     const auto end = static_cast<std::size_t>(share * static_cast<double>(text.size()));
     std::ofstream(file) << text.substr(0, text.find('\n', end) + 1);
   }
