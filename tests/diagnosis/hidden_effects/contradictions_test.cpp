@@ -16,7 +16,7 @@ void expect_said(const std::string& effect, double size) {
   hidden.seed = 5;
   hidden.secret[effect] = size;
   const TemporaryFolder folder;
-  const Outcome outcome = run_hidden(hidden, folder.path() / "drive");
+  const Outcome outcome = diagnose_hidden(hidden, folder.path() / "drive");
   EXPECT_TRUE(outcome.found.causes.empty()) << outcome.to_line();
   EXPECT_TRUE(outcome.found.unknown.empty()) << outcome.to_line();
   EXPECT_TRUE(outcome.found.extended.empty()) << outcome.to_line();

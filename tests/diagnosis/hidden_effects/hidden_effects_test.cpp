@@ -83,7 +83,7 @@ TEST(HiddenEffects, PosesThatAreFarOffWhereTheCarComesToRestAreOutliersAndNothin
     options.seed = seed;
     options.secret["poses.outliers"] = share;
     const TemporaryFolder folder;
-    const Outcome outcome = run_hidden(options, folder.path() / "drive");
+    const Outcome outcome = diagnose_hidden(options, folder.path() / "drive");
     SCOPED_TRACE(outcome.to_line());
     EXPECT_TRUE(outcome.found.unknown.empty());
     ASSERT_EQ(outcome.found.causes.size(), 1U);
@@ -99,7 +99,7 @@ TEST(HiddenEffects, WhereNothingIsHiddenNothingIsNamed) {
     HiddenDriveOptions options;
     options.seed = Random(seed, "null drive", i)() >> 1U;
     const TemporaryFolder folder;
-    const Outcome outcome = run_hidden(options, folder.path() / "drive");
+    const Outcome outcome = diagnose_hidden(options, folder.path() / "drive");
     EXPECT_TRUE(outcome.found.causes.empty() && outcome.found.unknown.empty()) << outcome.to_line();
   }
 }
@@ -111,7 +111,7 @@ TEST(HiddenEffects, WhatNoCatalogueListsIsUnknownWithItsHookAndCovariate) {
     options.seed = 2026;
     options.secret[outside.range.name] = draw_size(outside.range, 4);
     const TemporaryFolder folder;
-    const Outcome outcome = run_hidden(options, folder.path() / "drive");
+    const Outcome outcome = diagnose_hidden(options, folder.path() / "drive");
     EXPECT_TRUE(outcome.unknown_but_right(outside)) << outcome.to_line();
   }
 }
@@ -126,7 +126,7 @@ TEST(HiddenEffects, ACauseThatIsTakenOutOfTheCatalogueLeavesAFlag) {
     options.seed = 2027;
     options.secret[effect] = size;
     const TemporaryFolder folder;
-    const Outcome outcome = run_hidden(options, folder.path() / "drive", {effect});
+    const Outcome outcome = diagnose_hidden(options, folder.path() / "drive", {effect});
     EXPECT_FALSE(outcome.found.unknown.empty() && outcome.found.unexplained.empty())
         << outcome.to_line();
     EXPECT_FALSE(outcome.found.unknown.empty() && outcome.found.causes.empty())
@@ -190,7 +190,7 @@ TEST(HiddenEffects, OnAStraightDriveTheInseparableComeAsASet) {
   options.straight = true;
   options.secret["wheels0.radius"] = 0.02;
   const TemporaryFolder folder;
-  const Outcome outcome = run_hidden(options, folder.path() / "drive");
+  const Outcome outcome = diagnose_hidden(options, folder.path() / "drive");
   ASSERT_FALSE(outcome.found.causes.empty());
   EXPECT_TRUE(outcome.in_set("wheels0.radius")) << outcome.to_line();
   EXPECT_TRUE(outcome.in_set("map.scale")) << outcome.to_line();

@@ -19,7 +19,7 @@ Outcome with_radius(double time_s, double radius, std::uint64_t index) {
   HiddenDriveOptions hidden = drive_with_lasting_errors(time_s, random() >> 1U);
   if (radius != 0.0) hidden.secret["wheels0.radius"] = radius;
   const TemporaryFolder folder;
-  Outcome outcome = run_hidden(hidden, folder.path() / "drive");
+  Outcome outcome = diagnose_hidden(hidden, folder.path() / "drive");
   std::erase_if(outcome.found.causes,
                 [](const FoundCause& c) { return c.effect == "poses.correlation"; });
   return outcome;

@@ -41,21 +41,43 @@ std::string Outcome::to_line() const {
   return outcome_line(hidden.seed, hidden.secret, strength, found);
 }
 
-Outcome run_hidden(const HiddenDriveOptions& hidden,
-                   const std::filesystem::path& folder,
-                   const std::vector<std::string>& without) {
+namespace {
+
+MotionStreams record_and_read(const HiddenDriveOptions& hidden,
+                              const std::filesystem::path& folder) {
+  write_recording(record_drive(hidden), folder);
+  DriveOptions options;
+  options.num_threads = 1;
+  return motion_streams(Drive::open(folder, options));
+}
+
+Outcome diagnosed(const MotionStreams& streams,
+                  const HiddenDriveOptions& hidden,
+                  const std::filesystem::path& folder,
+                  const std::vector<std::string>& without) {
   Outcome outcome;
   outcome.hidden = hidden;
-  write_recording(record_drive(hidden), folder);
-  DriveOptions drive_options;
-  drive_options.num_threads = 1;
-  const Drive drive = Drive::open(folder, drive_options);
-  const MotionStreams streams = motion_streams(drive);
   DiagnosisOptions options;
   options.library.without = without;
   const double start = thread_seconds();
   outcome.found = diagnose(streams, folder.string(), options);
   outcome.seconds = thread_seconds() - start;
+  return outcome;
+}
+
+}  // namespace
+
+Outcome diagnose_hidden(const HiddenDriveOptions& hidden,
+                        const std::filesystem::path& folder,
+                        const std::vector<std::string>& without) {
+  return diagnosed(record_and_read(hidden, folder), hidden, folder, without);
+}
+
+Outcome run_hidden(const HiddenDriveOptions& hidden,
+                   const std::filesystem::path& folder,
+                   const std::vector<std::string>& without) {
+  const MotionStreams streams = record_and_read(hidden, folder);
+  Outcome outcome = diagnosed(streams, hidden, folder, without);
   const OracleAnswer oracle = ask_oracle(streams, hidden.secret);
   outcome.strength = oracle.strength;
   outcome.oracle_gain = oracle.gain;
