@@ -51,10 +51,10 @@ MotionStreams record_and_read(const HiddenDriveOptions& hidden,
   return motion_streams(Drive::open(folder, options));
 }
 
-Outcome diagnosed(const MotionStreams& streams,
-                  const HiddenDriveOptions& hidden,
-                  const std::filesystem::path& folder,
-                  const std::vector<std::string>& without) {
+Outcome diagnosis_alone(const MotionStreams& streams,
+                        const HiddenDriveOptions& hidden,
+                        const std::filesystem::path& folder,
+                        const std::vector<std::string>& without) {
   Outcome outcome;
   outcome.hidden = hidden;
   DiagnosisOptions options;
@@ -70,14 +70,14 @@ Outcome diagnosed(const MotionStreams& streams,
 Outcome diagnose_hidden(const HiddenDriveOptions& hidden,
                         const std::filesystem::path& folder,
                         const std::vector<std::string>& without) {
-  return diagnosed(record_and_read(hidden, folder), hidden, folder, without);
+  return diagnosis_alone(record_and_read(hidden, folder), hidden, folder, without);
 }
 
 Outcome run_hidden(const HiddenDriveOptions& hidden,
                    const std::filesystem::path& folder,
                    const std::vector<std::string>& without) {
   const MotionStreams streams = record_and_read(hidden, folder);
-  Outcome outcome = diagnosed(streams, hidden, folder, without);
+  Outcome outcome = diagnosis_alone(streams, hidden, folder, without);
   const OracleAnswer oracle = ask_oracle(streams, hidden.secret);
   outcome.strength = oracle.strength;
   outcome.oracle_gain = oracle.gain;
