@@ -24,6 +24,9 @@ struct BundlePoint {
   int ground_pose = -1;          ///< the height is known in this pose's frame; -1: not known
   double ground_height_m = 0.0;  ///< known within BundleOptions::ground_sigma_m
   bool fixed = false;            ///< does not move, for example a landmark of an existing map
+  /// Points of the same number, which follow each other, are one corner of the scene, with common
+  /// errors; -1: of its own.
+  int corner = -1;
 };
 
 /// A pixel where a camera saw a landmark.

@@ -1,5 +1,7 @@
 #include "mapping/optimisation/block_products.hpp"
 
+#include <algorithm>
+
 #include "base/target_clones.hpp"
 
 namespace roadbook {
@@ -15,6 +17,7 @@ template <std::size_t kInner>
 [[gnu::always_inline]] inline void subtract_outer(const double* A, const double* B, double* C) {
   Four upper[kInner];
   Two lower[kInner];
+#pragma GCC unroll 6
   for (std::size_t k = 0; k < kInner; ++k) {
     upper[k] = *reinterpret_cast<const Four*>(A + kSide * k);
     lower[k] = *reinterpret_cast<const Two*>(A + kSide * k + 4);
@@ -22,6 +25,7 @@ template <std::size_t kInner>
   for (std::size_t c = 0; c < kSide; ++c) {
     Four u = upper[0] * B[c];
     Two l = lower[0] * B[c];
+#pragma GCC unroll 6
     for (std::size_t k = 1; k < kInner; ++k) {
       u += upper[k] * B[c + kSide * k];
       l += lower[k] * B[c + kSide * k];
@@ -38,6 +42,7 @@ template <std::size_t kInner>
                                                double* C) {
   Four upper[kSide];
   Two lower[kSide];
+#pragma GCC unroll 6
   for (std::size_t k = 0; k < kSide; ++k) {
     upper[k] = *reinterpret_cast<const Four*>(A + kSide * k);
     lower[k] = *reinterpret_cast<const Two*>(A + kSide * k + 4);
@@ -46,6 +51,7 @@ template <std::size_t kInner>
     const double* b = B + kSide * c;
     Four u = upper[0] * b[0];
     Two l = lower[0] * b[0];
+#pragma GCC unroll 6
     for (std::size_t k = 1; k < kSide; ++k) {
       u += upper[k] * b[k];
       l += lower[k] * b[k];
@@ -67,10 +73,12 @@ template <bool kTransposed>
   std::size_t c = 0;
   for (; c + 4 <= columns; c += 4) {
     Four b[kSide];
+#pragma GCC unroll 6
     for (std::size_t k = 0; k < kSide; ++k)
       b[k] = *reinterpret_cast<const Four*>(B + columns * k + c);
     for (std::size_t row = 0; row < kSide; ++row) {
       Four sum = a(row, 0) * b[0];
+#pragma GCC unroll 6
       for (std::size_t k = 1; k < kSide; ++k) sum += a(row, k) * b[k];
       *reinterpret_cast<Four*>(C + columns * row + c) -= sum;
     }
@@ -83,32 +91,89 @@ template <bool kTransposed>
     }
 }
 
+// C -= the sum over the columns k of a panel of its block in row i times that in row j, transposed.
+[[gnu::always_inline]] inline void subtract_from_one(const PanelUpdate& update,
+                                                     std::size_t i,
+                                                     std::size_t j,
+                                                     double* C) {
+  Four upper[kSide] = {};
+  Two lower[kSide] = {};
+  for (std::size_t k = 0; k < update.width; ++k) {
+    const double* A = update.source[k] + kSide * kSide * (update.first + i);
+    const double* B = update.source[k] + kSide * kSide * (update.first + j);
+    for (std::size_t t = 0; t < kSide; ++t, A += kSide, B += kSide) {
+      const Four u = *reinterpret_cast<const Four*>(A);
+      const Two l = *reinterpret_cast<const Two*>(A + 4);
+#pragma GCC unroll 6
+      for (std::size_t c = 0; c < kSide; ++c) {
+        upper[c] += u * B[c];
+        lower[c] += l * B[c];
+      }
+    }
+  }
+#pragma GCC unroll 6
+  for (std::size_t c = 0; c < kSide; ++c) {
+    *reinterpret_cast<Four*>(C + kSide * c) -= upper[c];
+    *reinterpret_cast<Two*>(C + kSide * c + 4) -= lower[c];
+  }
+}
+
+// The same for rows i and i + 1, whose last two values share a vector: half of the columns at once.
+[[gnu::always_inline]] inline void subtract_from_two(const PanelUpdate& update,
+                                                     std::size_t i,
+                                                     std::size_t j,
+                                                     double* C,
+                                                     double* D) {
+  constexpr std::size_t kHalf = 3;
+  for (std::size_t half = 0; half < kSide; half += kHalf) {
+    Four first[kHalf] = {}, second[kHalf] = {}, ends[kHalf] = {};
+    for (std::size_t k = 0; k < update.width; ++k) {
+      const double* A = update.source[k] + kSide * kSide * (update.first + i);
+      const double* B = update.source[k] + kSide * kSide * (update.first + j) + half;
+      for (std::size_t t = 0; t < kSide; ++t, A += kSide, B += kSide) {
+        const double* next = A + kSide * kSide;
+        const Four u = *reinterpret_cast<const Four*>(A);
+        const Four v = *reinterpret_cast<const Four*>(next);
+        const Four w = {A[4], A[5], next[4], next[5]};
+#pragma GCC unroll 3
+        for (std::size_t c = 0; c < kHalf; ++c) {
+          first[c] += u * B[c];
+          second[c] += v * B[c];
+          ends[c] += w * B[c];
+        }
+      }
+    }
+#pragma GCC unroll 3
+    for (std::size_t c = 0; c < kHalf; ++c) {
+      double* one = C + kSide * (half + c);
+      double* two = D + kSide * (half + c);
+      *reinterpret_cast<Four*>(one) -= first[c];
+      *reinterpret_cast<Four*>(two) -= second[c];
+      one[4] -= ends[c][0];
+      one[5] -= ends[c][1];
+      two[4] -= ends[c][2];
+      two[5] -= ends[c][3];
+    }
+  }
+}
+
 }  // namespace
 
 ROADBOOK_CLONES void subtract_panel(const PanelUpdate& update) {
   constexpr std::size_t kBlock = kSide * kSide;
-  for (std::size_t i = 0; i < update.count; ++i)
-    for (std::size_t j = 0; j < update.targets && j <= i; ++j) {
-      Four upper[kSide] = {};
-      Two lower[kSide] = {};
-      for (std::size_t k = 0; k < update.width; ++k) {
-        const double* A = update.source[k] + kBlock * (update.first + i);
-        const double* B = update.source[k] + kBlock * (update.first + j);
-        for (std::size_t t = 0; t < kSide; ++t) {
-          const Four u = *reinterpret_cast<const Four*>(A + kSide * t);
-          const Two l = *reinterpret_cast<const Two*>(A + kSide * t + 4);
-          for (std::size_t c = 0; c < kSide; ++c) {
-            upper[c] += u * B[kSide * t + c];
-            lower[c] += l * B[kSide * t + c];
-          }
-        }
-      }
-      double* C = update.target[update.place[j]] + kBlock * update.place[i];
-      for (std::size_t c = 0; c < kSide; ++c) {
-        *reinterpret_cast<Four*>(C + kSide * c) -= upper[c];
-        *reinterpret_cast<Two*>(C + kSide * c + 4) -= lower[c];
-      }
+  for (std::size_t i = 0; i < update.count;) {
+    const bool pair = i + 1 < update.count && i + 1 >= update.targets;
+    const std::size_t targets = std::min(update.targets, i + 1);
+    for (std::size_t j = 0; j < targets; ++j) {
+      double* C = update.target[update.place[j]];
+      double* first = C + kBlock * update.place[i];
+      if (pair)
+        subtract_from_two(update, i, j, first, C + kBlock * update.place[i + 1]);
+      else
+        subtract_from_one(update, i, j, first);
     }
+    i += pair ? 2 : 1;
+  }
 }
 
 ROADBOOK_CLONES void add_symmetric(const SymmetricProduct& product) {

@@ -74,6 +74,7 @@ double effective_clusters(const ClusterData& data,
     return places.try_emplace(place_of(data, pose, camera), Row::Zero(sample.poses.cols()))
         .first->second;
   };
+  Row of_corner = Row::Zero(sample.poses.cols());  // whose points follow each other
   for (std::size_t p = 0; p < data.problem.points.size(); ++p) {
     const PointTerms point = point_terms(data.problem, data.layout, data.options, data.state, p);
     Row landmark = Row::Zero(sample.poses.cols());
@@ -92,7 +93,13 @@ double effective_clusters(const ClusterData& data,
       place(t.pose, t.camera) += a;
       landmark += a;
     }
-    shares.add(landmark / std::max(0.1, 1.0 - data.leverage[p]));
+    of_corner += landmark / std::max(0.1, 1.0 - data.leverage[p]);
+    const int corner = data.problem.points[p].corner;
+    if (corner >= 0 && p + 1 < data.problem.points.size() &&
+        data.problem.points[p + 1].corner == corner)
+      continue;
+    shares.add(of_corner);
+    of_corner.setZero();
   }
   for (const MotionConstraint& motion : data.problem.motions) {
     const MotionScore s = motion_score(data, motion);

@@ -16,6 +16,7 @@ namespace roadbook {
 namespace {
 
 constexpr int kCellPx = 64;  // evenness over the half-size image
+constexpr double kLeastShare = 1.0 / 3.0;  // of the key points of an image
 
 int share_of_rig(std::size_t cameras) {
   return cameras >= 4 || cameras == 0 ? 1 : 4 / static_cast<int>(cameras);
@@ -51,6 +52,13 @@ class Quota {
       ++image.taken[cell_of(view)];
     }
     return true;
+  }
+
+  // From here on images need this share of their key points alone.
+  void want_less(double share) {
+    for (auto& of_keyframe : images_)
+      for (Image& image : of_keyframe)
+        image.wanted = static_cast<int>(share * static_cast<double>(image.wanted));
   }
 
  private:
@@ -223,6 +231,27 @@ void add_motions(const MappingInput& input, const BundleStageOptions& options, B
 
 }  // namespace
 
+std::vector<std::optional<Eigen::Vector3d>> adjusted_places(
+    const BundleStage& stage, const std::vector<std::uint8_t>& point_kept, std::size_t tracks) {
+  std::vector<std::optional<Eigen::Vector3d>> places(tracks);
+  std::vector<double> views(stage.problem.points.size(), 0.0);
+  for (const BundleObservation& o : stage.problem.observations)
+    views[static_cast<std::size_t>(o.point)] += 1.0;
+  std::vector<double> weight(tracks, 0.0);
+  for (std::size_t p = 0; p < stage.problem.points.size(); ++p) {
+    if (point_kept[p] == 0) continue;
+    const auto track = static_cast<std::size_t>(stage.track_of_point[p]);
+    const Eigen::Vector3d& p_map = stage.problem.points[p].p_map;
+    weight[track] += views[p];
+    // The mean by views; of a single point its own bits.
+    places[track] =
+        places[track]
+            ? Eigen::Vector3d(*places[track] + views[p] / weight[track] * (p_map - *places[track]))
+            : p_map;
+  }
+  return places;
+}
+
 BundleStage make_bundle(const MappingInput& input,
                         const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                         const std::vector<JoinedTrack>& tracks,
@@ -236,12 +265,10 @@ BundleStage make_bundle(const MappingInput& input,
   for (const auto& T : T_map_vehicle) stage.problem.poses.push_back({T, false});
   add_motions(input, options, stage);
 
-  const char* env = std::getenv("RB_PASSES");
-  const int together = env ? std::atoi(env) : options.passes_together;
-  const PassGroups groups(together > 0
+  const PassGroups groups(options.passes_together > 0
                               ? pass_numbers(input, T_map_vehicle, options.passes)
                               : std::vector<int>(T_map_vehicle.size(), 0),
-                          together);
+                          options.passes_together);
   const auto candidates = candidates_of(T_map_vehicle, tracks, groups, options);
   const auto views = view_from_above(input, T_map_vehicle, tracks, options.ground);
   const double level = ground_level(views, options.ground);
@@ -263,12 +290,20 @@ BundleStage make_bundle(const MappingInput& input,
          lacks_wheels(input, views[c.track].keyframe)));
   Quota quota(input, options.per_image);
   std::vector<std::size_t> chosen;
+  // A track in one group: a variety of corners. In more where images would have too few key points.
   std::vector<bool> taken(tracks.size(), false);
+  std::vector<std::size_t> others;
   for (const std::size_t c : by_worth(tracks, candidates, gives_scale)) {
-    if (taken[candidates[c].track] || !quota.take(candidates[c].views)) continue;
-    taken[candidates[c].track] = true;
-    chosen.push_back(c);
+    if (taken[candidates[c].track]) {
+      others.push_back(c);
+    } else if (quota.take(candidates[c].views)) {
+      taken[candidates[c].track] = true;
+      chosen.push_back(c);
+    }
   }
+  quota.want_less(kLeastShare);
+  for (const std::size_t c : others)
+    if (quota.take(candidates[c].views)) chosen.push_back(c);
   std::sort(chosen.begin(), chosen.end());
 
   for (const std::size_t c : chosen) {
@@ -276,6 +311,9 @@ BundleStage make_bundle(const MappingInput& input,
     const int point = static_cast<int>(stage.problem.points.size());
     BundlePoint p;
     p.p_map = *tracks[candidate.track].p_map;
+    const bool again = !stage.track_of_point.empty() &&
+                       stage.track_of_point.back() == static_cast<int>(candidate.track);
+    p.corner = again ? stage.problem.points.back().corner : point;
     p.ground = is_ground(candidate);
     p.ground_pose = p.ground ? views[candidate.track].keyframe : -1;
     stage.problem.points.push_back(p);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/progress.hpp"
@@ -22,8 +24,8 @@ struct BundleStageOptions {
   /// (docs/results/speed.md).
   int reach_keyframes = 20;
   /// Passes over one place are taken in groups of so many, in the order in which they were driven.
-  /// The last pass of a group is the first one of the next, and a track takes part with the key
-  /// points of one group: the cost is linear in the passes. At least 2; 0: all passes together.
+  /// The last pass of a group is the first one of the next. A point has key points of one group, a
+  /// track may have a point in each: the cost is linear in the passes. At least 2; 0: all together.
   int passes_together = 4;
   PlacePassOptions passes;
   double feature_sigma_px = 0.6;     ///< of a key point, half-size image
@@ -36,7 +38,7 @@ struct BundleStageOptions {
 /// A bundle problem and the meaning of its indices.
 struct BundleStage {
   BundleProblem problem;
-  std::vector<int> track_of_point;    ///< index in the joined tracks
+  std::vector<int> track_of_point;    ///< index in the joined tracks, ascending
   std::vector<int> camera_base;       ///< of each session: index of its first camera
   std::vector<int> scale_of_session;  ///< index of its wheels' factor; -1: no wheels
 };
@@ -47,5 +49,10 @@ struct BundleStage {
                                       const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                                       const std::vector<JoinedTrack>& tracks,
                                       const BundleStageOptions& options);
+
+/// Positions [m, map] of the tracks whose points the adjustment kept (`BundleResult::point_kept`):
+/// the mean of a track's points, each by its views.
+[[nodiscard]] std::vector<std::optional<Eigen::Vector3d>> adjusted_places(
+    const BundleStage& stage, const std::vector<std::uint8_t>& point_kept, std::size_t tracks);
 
 }  // namespace roadbook

@@ -244,10 +244,10 @@ Adjusted adjust(const MappingInput& input,
   }
   triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
   // Adjusted positions are better than triangulated ones.
-  for (std::size_t p = 0; p < adjusted.stage.problem.points.size(); ++p)
-    if (adjusted.result.point_kept[p])
-      adjusted.tracks[static_cast<std::size_t>(adjusted.stage.track_of_point[p])].p_map =
-          adjusted.stage.problem.points[p].p_map;
+  const auto places =
+      adjusted_places(adjusted.stage, adjusted.result.point_kept, adjusted.tracks.size());
+  for (std::size_t t = 0; t < places.size(); ++t)
+    if (places[t]) adjusted.tracks[t].p_map = places[t];
   split_wrong_joins_of(input, options, adjusted);
   return adjusted;
 }

@@ -13,7 +13,7 @@ namespace roadbook {
 void visit_earlier_passes(const MappingInput& input,
                           const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                           const PlacePassOptions& options,
-                          const std::function<void(std::size_t, std::size_t, double)>& visit) {
+                          const std::function<void(const EarlierPass&)>& visit) {
   const auto& keyframes = input.odometry.keyframes;
   const auto segments = segments_of(keyframes);
   const auto travelled_m = travelled_distances(input, T_map_vehicle);
@@ -25,9 +25,9 @@ void visit_earlier_passes(const MappingInput& input,
           travelled_m[k] - travelled_m[other] < options.min_travel_m)
         return;
       const Eigen::Isometry3d T = T_map_vehicle[other].inverse() * T_map_vehicle[k];
-      const double distance = T.translation().norm();
-      if (std::abs(heading_of(T)) <= options.heading_rad && distance < options.radius_m)
-        visit(k, other, distance);
+      if (std::abs(heading_of(T)) <= options.heading_rad &&
+          T.translation().norm() < options.radius_m)
+        visit({k, other, T.translation()});
     });
     earlier.insert(p.head<2>(), k);
   }
@@ -36,11 +36,21 @@ void visit_earlier_passes(const MappingInput& input,
 std::vector<int> pass_numbers(const MappingInput& input,
                               const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                               const PlacePassOptions& options) {
+  constexpr double kBeside_m = 0.5;
+  constexpr double kBesideSpacings = 0.6;
   std::vector<int> number(T_map_vehicle.size(), 0);
-  visit_earlier_passes(input, T_map_vehicle, options,
-                       [&](std::size_t k, std::size_t earlier, double) {
-                         number[k] = std::max(number[k], number[earlier] + 1);
-                       });
+  std::vector<bool> is_beside(T_map_vehicle.size(), false);
+  visit_earlier_passes(input, T_map_vehicle, options, [&](const EarlierPass& pair) {
+    const std::size_t k = pair.keyframe;
+    const double spacing =
+        k == 0 ? 0.0 : (T_map_vehicle[k].translation() - T_map_vehicle[k - 1].translation()).norm();
+    const bool beside = std::abs(pair.way_m.x()) <= std::max(kBeside_m, kBesideSpacings * spacing);
+    // Farther ahead lie keyframes of the own pass, where it ends as a ring.
+    if (is_beside[k] && !beside) return;
+    const int next = number[pair.earlier] + 1;
+    number[k] = beside && !is_beside[k] ? next : std::max(number[k], next);
+    is_beside[k] = beside;
+  });
   return number;
 }
 

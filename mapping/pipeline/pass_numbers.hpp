@@ -15,15 +15,22 @@ struct PlacePassOptions {
   double min_travel_m = 10.0;  ///< driven between them, if no gap lies between them
 };
 
-/// Calls `visit(keyframe, earlier, distance_m)` for each pair of keyframes of two passes over one
-/// place, in the order of `keyframe`. Linear in the number of pairs.
+/// A keyframe of an earlier pass over the place of `keyframe`.
+struct EarlierPass {
+  std::size_t keyframe;
+  std::size_t earlier;
+  Eigen::Vector3d way_m;  ///< from the earlier to the later pose, in the earlier vehicle's frame
+};
+
+/// Calls `visit` for each pair of keyframes of two passes over one place, in the order of the later
+/// one. Linear in the number of pairs.
 void visit_earlier_passes(const MappingInput& input,
                           const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                           const PlacePassOptions& options,
-                          const std::function<void(std::size_t, std::size_t, double)>& visit);
+                          const std::function<void(const EarlierPass&)>& visit);
 
-/// Number of earlier passes over the place of each keyframe: 0 in the first pass. Neighbouring
-/// places whose passes began at different times may differ.
+/// Number of earlier passes over the place of each keyframe, counted beside it: 0 in the first pass.
+/// Neighbouring places whose passes began at different times may differ.
 [[nodiscard]] std::vector<int> pass_numbers(const MappingInput& input,
                                             const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                                             const PlacePassOptions& options);

@@ -203,6 +203,8 @@ Adjusted adjust_session(const JoinedSession& joined,
 
   BundleStageOptions stage_options = options.bundle;
   stage_options.bundle.num_threads = options.num_threads;
+  // Poses that stay cost nothing, however many passes they are of.
+  if (options.adjust != SessionAdjust::kAll) stage_options.passes_together = 0;
   adjusted.stage = make_bundle(joined.input, joined.T_map_vehicle, tracks, stage_options);
   BundleProblem& problem = adjusted.stage.problem;
   for (std::size_t k = 0; k < free.size(); ++k) problem.poses[k].fixed = !free[k];
@@ -231,9 +233,9 @@ Adjusted adjust_session(const JoinedSession& joined,
 
   // Points that took part have adjusted positions, which are better than triangulated ones.
   triangulate_tracks(joined.input, adjusted.T_map_vehicle, options.triangulation, tracks);
-  for (std::size_t p = 0; p < problem.points.size(); ++p)
-    if (adjusted.result.point_kept[p])
-      tracks[at(adjusted.stage.track_of_point[p])].p_map = problem.points[p].p_map;
+  const auto places = adjusted_places(adjusted.stage, adjusted.result.point_kept, tracks.size());
+  for (std::size_t t = 0; t < places.size(); ++t)
+    if (places[t]) tracks[t].p_map = places[t];
   for (std::size_t i = 0; i < chosen.size(); ++i)
     if (!map_stays || landmarks[i] < 0) adjusted.tracks[chosen[i]] = std::move(tracks[i]);
   for (int& track : adjusted.stage.track_of_point) track = static_cast<int>(chosen[at(track)]);

@@ -105,8 +105,12 @@ TEST(SimulatedAgain, ShowsTheGyrosBiasAgainstPosesThatSlideSideways) {
   options.compare = true;
   const Diagnosis d = diagnose(streams, "drive", options);
   for (const StreamComparison& c : d.simulated) {
-    if (c.channel == "yaw_rate") EXPECT_NEAR(c.recorded.mean, 0.573, 0.1);
-    if (c.channel == "heading" && c.stream == "wheels0") EXPECT_NEAR(c.recorded.mean, 0.0, 0.1);
+    if (c.channel == "yaw_rate") {
+      EXPECT_NEAR(c.recorded.mean, 0.573, 0.1);
+    }
+    if (c.channel == "heading" && c.stream == "wheels0") {
+      EXPECT_NEAR(c.recorded.mean, 0.0, 0.1);
+    }
   }
 }
 

@@ -42,14 +42,18 @@ bool is_sure(const FoundCause& c) {
 Problem doubt(const Drive& drive,
               const FoundCause& cause,
               const Advice& words,
-              const EffectSizes& known) {
+              const EffectSizes& known,
+              bool has_gyro) {
   const std::size_t point = cause.effect.find('.');
   const std::string stream = cause.effect.substr(0, point);
   std::string fault = words.fault;
   if (!fault.empty()) fault[0] = static_cast<char>(std::tolower(fault[0]));
   std::string size = words.size;
   if (known.contains(cause.effect)) size += " in addition to the model";
-  if (!cause.inseparable.empty()) size += "; " + words.certainty;
+  if (!cause.inseparable.empty())
+    size += "; " + words.certainty;
+  else if (stream == "wheels0" && cause.effect.ends_with(".latency") && !has_gyro)
+    size += "; without a gyro, an error of the time stamps of the images looks the same";
   return {Severity::kWarning,
           (drive.folder() / (stream == "steering0" ? "wheels0" : stream)).string(),
           0,
@@ -89,7 +93,7 @@ std::vector<Problem> motion_doubts(const Map& map, const Drive& drive, const Eff
     if (!is_sure(c)) continue;
     const auto of_cause = std::find_if(words.begin(), words.end(),
                                        [&](const Advice& a) { return a.effect == c.effect; });
-    if (of_cause != words.end()) doubts.push_back(doubt(drive, c, *of_cause, options.known));
+    if (of_cause != words.end()) doubts.push_back(doubt(drive, c, *of_cause, options.known, !streams.gyro.empty()));
   }
   return doubts;
 }
