@@ -88,9 +88,8 @@ std::optional<Lasting> lasting_part(const std::vector<double>& e) {
     last = autocorrelation(lag);
   }
   const double fallen = std::max(last, 0.0) / first;
-  const double keep =
-      std::clamp(std::pow(fallen, 1.0 / static_cast<double>(lag - 1)), std::min(first, kLongest),
-                 kLongest);
+  const double keep = std::clamp(std::pow(fallen, 1.0 / static_cast<double>(lag - 1)),
+                                 std::min(first, kLongest), kLongest);
   // Differences e - keep * e_before are a moving average of one step (ARMA(1, 1)).
   const double share = std::min(first / keep, 1.0);
   const double square = share * (1.0 - keep * keep) + (1.0 - share) * (1.0 + keep * keep);
@@ -139,7 +138,8 @@ std::optional<Innovations> without_autocorrelation(const Projection& projection,
         row(k)[s] = now[s] - keep * before[s] + part->repaid * row(k - 1)[s];
     }
     // What is left has the scatter 1 again.
-    const double scale = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(predicted, 1)));
+    const double scale =
+        std::sqrt(squares / static_cast<double>(std::max<std::size_t>(predicted, 1)));
     const double whole = std::sqrt(squares_of(e) / static_cast<double>(e.size()));
     for (std::size_t k = 0; k < rows.size(); ++k)
       for (std::size_t s = 0; s < in.sides; ++s)

@@ -305,8 +305,8 @@ class Search {
         const auto there = now.find(candidate.name);
         if (candidate.kind == CandidateKind::kGrammar || there == now.end()) continue;
         const auto before = first.find(candidate.name);
-        const double p = before == first.end() ? there->second
-                                               : std::min(there->second, before->second);
+        const double p =
+            before == first.end() ? there->second : std::min(there->second, before->second);
         if (p <= most) continue;
         most = p;
         worst = a;

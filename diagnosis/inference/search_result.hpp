@@ -34,7 +34,8 @@ struct SearchOptions {
 struct AcceptedEffect {
   Accepted cause;
   double sigma = 0.0;  ///< of a single size
-  /// P-value, corrected for the number of candidates; where errors of the reference last, with them.
+  /// P-value, corrected for the number of candidates; where errors of the reference last, with
+  /// them.
   double p = 1.0;
   double statistic = 0.0;
   double evidence = 0.0;

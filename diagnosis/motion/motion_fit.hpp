@@ -45,8 +45,8 @@ struct Pass {
 /// their stamps as well.
 [[nodiscard]] Trajectory trajectory_of_lines(const Observations& obs, double late_s = 0.0);
 
-/// First guess: `trajectory_of_lines`; where the poses are too rough for it, the way that wheels and
-/// gyro reckon, laid on the poses. That way shows no error of wheels or gyro.
+/// First guess: `trajectory_of_lines`; where the poses are too rough for it, the way that wheels
+/// and gyro reckon, laid on the poses. That way shows no error of wheels or gyro.
 [[nodiscard]] Trajectory trajectory_of_poses(const Observations& obs, double late_s = 0.0);
 
 /// Adds the solution of a pass (its right-hand sides weighted) to the trajectory.

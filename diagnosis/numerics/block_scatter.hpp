@@ -17,8 +17,9 @@ struct BlockPart {
 
 /// P-value of a sum by the scatter of blocks of 1, 2, 4, ... s in place of a model's noise: the
 /// largest of those lengths that leave six blocks (cluster-robust; F distribution with one
-/// degree of freedom less than there are blocks, counted as if each showed as much). Large where errors last. `sum`: over its
-/// rows, such that its square over the squares of blocks is a statistic of `freedom` parameters.
+/// degree of freedom less than there are blocks, counted as if each showed as much). Large where
+/// errors last. `sum`: over its rows, such that its square over the squares of blocks is a
+/// statistic of `freedom` parameters.
 [[nodiscard]] double p_by_block_scatter(double sum, std::vector<BlockPart> parts, int freedom);
 
 }  // namespace roadbook

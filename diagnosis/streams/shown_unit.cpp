@@ -14,8 +14,7 @@ ShownUnit shown_unit(const Observations& obs, Channel channel) {
   std::vector<double> intervals;  // the usual one: gaps do not count
   for (std::size_t i = 1; i < obs.wheels.size(); ++i)
     intervals.push_back(obs.wheels[i].t_s - obs.wheels[i - 1].t_s);
-  const double interval_s =
-      intervals.empty() ? 1.0 : std::max(median(std::move(intervals)), 1e-9);
+  const double interval_s = intervals.empty() ? 1.0 : std::max(median(std::move(intervals)), 1e-9);
   switch (channel) {
     case Channel::kWheelDistance:
       return {"cm/s", 100.0 / interval_s};

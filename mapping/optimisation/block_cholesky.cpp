@@ -159,7 +159,8 @@ bool BlockCholesky::factor(int num_threads) {
   const auto workers = static_cast<std::size_t>(n < 64 ? 1 : thread_count(num_threads));
   std::atomic<std::size_t> next{0};
   std::atomic<bool> good{true};
-  // Supernodes are handed out in ascending order, so whatever a worker waits for is being worked on.
+  // Supernodes are handed out in ascending order, so whatever a worker waits for is being worked
+  // on.
   const auto done = std::make_unique<std::atomic<int>[]>(panels);
   parallel_for(workers, static_cast<int>(workers), [&](std::size_t) {
     std::vector<std::size_t> row_of(n, 0);  // of the panel, by row of the matrix
@@ -184,8 +185,8 @@ bool BlockCholesky::factor(int num_threads) {
       std::iota(place.begin(), place.end(), std::size_t{0});
       for (std::size_t c = 0; c < width && good; ++c) {
         if (c > 0)
-          subtract_panel({columns.of.data(), c, c, 1, place.size() - c, place.data() + c,
-                          columns.of.data()});
+          subtract_panel(
+              {columns.of.data(), c, c, 1, place.size() - c, place.data() + c, columns.of.data()});
         if (!finish_column(first + c)) good = false;
       }
       if (workers > 1) {
@@ -279,8 +280,8 @@ void BlockCholesky::invert_supernode(std::size_t panel, int num_threads) {
   Eigen::MatrixXd L = Eigen::MatrixXd::Zero(index(width), index(width));
   for (std::size_t c = 0; c < width; ++c)
     for (std::size_t r = c; r < width; ++r) L.block<6, 6>(index(r), index(c)) = block(r, c);
-  const Eigen::MatrixXd M = L.triangularView<Eigen::Lower>().solve(
-      Eigen::MatrixXd::Identity(index(width), index(width)));
+  const Eigen::MatrixXd M =
+      L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(index(width), index(width)));
   using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic>;
   std::vector<Rows> l(below, Rows::Zero(6, index(width)));
   std::vector<Rows> sum = l;  // Z_RR l
@@ -289,8 +290,9 @@ void BlockCholesky::invert_supernode(std::size_t panel, int num_threads) {
       l[r].noalias() += block(width + r, c) * M.middleRows<6>(index(c));
   // Each thread has columns of its own.
   const double work = static_cast<double>(below) * static_cast<double>(below * width);
-  const auto workers =
-      work < 1e4 ? std::size_t{1} : std::min(width, static_cast<std::size_t>(thread_count(num_threads)));
+  const auto workers = work < 1e4
+                           ? std::size_t{1}
+                           : std::min(width, static_cast<std::size_t>(thread_count(num_threads)));
   parallel_for(workers, static_cast<int>(workers), [&](std::size_t worker) {
     const std::size_t begin = width * worker / workers;
     const std::size_t columns_of_worker = width * (worker + 1) / workers - begin;
@@ -309,8 +311,7 @@ void BlockCholesky::invert_supernode(std::size_t panel, int num_threads) {
   Z_JJ = (0.5 * (Z_JJ + Z_JJ.transpose())).eval();
   for (std::size_t c = 0; c < width; ++c) {
     for (std::size_t r = c; r < width; ++r) block(r, c) = Z_JJ.block<6, 6>(index(r), index(c));
-    for (std::size_t r = 0; r < below; ++r)
-      block(width + r, c) = -sum[r].middleCols<6>(index(c));
+    for (std::size_t r = 0; r < below; ++r) block(width + r, c) = -sum[r].middleCols<6>(index(c));
   }
 }
 

@@ -119,11 +119,8 @@ template <bool kTransposed>
 }
 
 // The same for rows i and i + 1, whose last two values share a vector: half of the columns at once.
-[[gnu::always_inline]] inline void subtract_from_two(const PanelUpdate& update,
-                                                     std::size_t i,
-                                                     std::size_t j,
-                                                     double* C,
-                                                     double* D) {
+[[gnu::always_inline]] inline void subtract_from_two(
+    const PanelUpdate& update, std::size_t i, std::size_t j, double* C, double* D) {
   constexpr std::size_t kHalf = 3;
   for (std::size_t half = 0; half < kSide; half += kHalf) {
     Four first[kHalf] = {}, second[kHalf] = {}, ends[kHalf] = {};
@@ -181,8 +178,7 @@ ROADBOOK_CLONES void add_symmetric(const SymmetricProduct& product) {
   if (product.l_i == nullptr) return;
   double transposed[kSide * kSide];
   for (std::size_t c = 0; c < kSide; ++c)
-    for (std::size_t r = 0; r < kSide; ++r)
-      transposed[c + kSide * r] = product.Z[r + kSide * c];
+    for (std::size_t r = 0; r < kSide; ++r) transposed[c + kSide * r] = product.Z[r + kSide * c];
   add_product(transposed, product.l_i, product.width, product.sum_k);
 }
 

@@ -20,8 +20,8 @@ struct PanelUpdate {
 };
 void subtract_panel(const PanelUpdate& update);
 
-/// Of a block Z_ik of a symmetric matrix: sum_i += Z_ik l_k, and sum_k += Z_ik^T l_i, for rows l_i and
-/// l_k of `width` blocks, one behind the other. On the diagonal (`l_i` null) the first alone.
+/// Of a block Z_ik of a symmetric matrix: sum_i += Z_ik l_k, and sum_k += Z_ik^T l_i, for rows l_i
+/// and l_k of `width` blocks, one behind the other. On the diagonal (`l_i` null) the first alone.
 struct SymmetricProduct {
   const double* Z;
   const double* l_i;

@@ -71,8 +71,7 @@ void draw_points(const ClusterData& data, int chunk, const PlaceSigns& places, P
     const PointTerms point = point_terms(data.problem, data.layout, data.options, data.state, p);
     if (point.terms.empty()) continue;
     const int corner = data.problem.points[p].corner;
-    const Signs track =
-        signs_of(stream(data, "landmark", corner < 0 ? p : at(corner), chunk)());
+    const Signs track = signs_of(stream(data, "landmark", corner < 0 ? p : at(corner), chunk)());
     const double grown = 1.0 / std::max(0.1, 1.0 - data.leverage[p]);
     Eigen::VectorXd own(2 * static_cast<Eigen::Index>(point.terms.size()));
     residuals.resize(own.size(), kDraws);

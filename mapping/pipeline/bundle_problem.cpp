@@ -15,7 +15,7 @@
 namespace roadbook {
 namespace {
 
-constexpr int kCellPx = 64;  // evenness over the half-size image
+constexpr int kCellPx = 64;                // evenness over the half-size image
 constexpr double kLeastShare = 1.0 / 3.0;  // of the key points of an image
 
 int share_of_rig(std::size_t cameras) {
@@ -156,7 +156,8 @@ std::vector<PassViews> views_by_pass(const JoinedTrack& track,
   return passes;
 }
 
-// Candidates of one corner: one in each group of passes that saw it, if not by its first pass alone.
+// Candidates of one corner: one in each group of passes that saw it, if not by its first pass
+// alone.
 void add_candidates(std::size_t track,
                     const std::vector<PassViews>& passes,
                     const PassGroups& groups,
@@ -285,8 +286,8 @@ BundleStage make_bundle(const MappingInput& input,
   for (const Candidate& c : candidates)
     gives_scale.push_back(
         is_ground(c) &&
-        (!input.has_wheels[static_cast<std::size_t>(input.session[static_cast<std::size_t>(
-             tracks[c.track].views.front().keyframe)])] ||
+        (!input.has_wheels[static_cast<std::size_t>(
+             input.session[static_cast<std::size_t>(tracks[c.track].views.front().keyframe)])] ||
          lacks_wheels(input, views[c.track].keyframe)));
   Quota quota(input, options.per_image);
   std::vector<std::size_t> chosen;

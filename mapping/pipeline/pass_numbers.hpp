@@ -29,8 +29,8 @@ void visit_earlier_passes(const MappingInput& input,
                           const PlacePassOptions& options,
                           const std::function<void(const EarlierPass&)>& visit);
 
-/// Number of earlier passes over the place of each keyframe, counted beside it: 0 in the first pass.
-/// Neighbouring places whose passes began at different times may differ.
+/// Number of earlier passes over the place of each keyframe, counted beside it: 0 in the first
+/// pass. Neighbouring places whose passes began at different times may differ.
 [[nodiscard]] std::vector<int> pass_numbers(const MappingInput& input,
                                             const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                                             const PlacePassOptions& options);

@@ -16,15 +16,13 @@ std::vector<int> nearest_earlier(const MappingInput& input,
                                  const PlacePassOptions& options) {
   std::vector<int> nearest(component.size(), -1);
   std::vector<double> least(component.size(), options.radius_m);
-  visit_earlier_passes(input, T_map_vehicle, options,
-                       [&](const EarlierPass& pair) {
-                         const std::size_t k = pair.keyframe;
-                         const double distance = pair.way_m.norm();
-                         if (component[pair.earlier] != component[k] || !(distance < least[k]))
-                           return;
-                         least[k] = distance;
-                         nearest[k] = static_cast<int>(pair.earlier);
-                       });
+  visit_earlier_passes(input, T_map_vehicle, options, [&](const EarlierPass& pair) {
+    const std::size_t k = pair.keyframe;
+    const double distance = pair.way_m.norm();
+    if (component[pair.earlier] != component[k] || !(distance < least[k])) return;
+    least[k] = distance;
+    nearest[k] = static_cast<int>(pair.earlier);
+  });
   return nearest;
 }
 

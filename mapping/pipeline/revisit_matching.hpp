@@ -8,10 +8,10 @@
 namespace roadbook {
 
 struct RevisitOptions {
-  PlacePassOptions passes;      ///< when two poses see the same place
-  double search_px = 5.0;  ///< around the predicted pixel, half-size image
-  int max_hamming = 90;    ///< of 512 bits
-  double max_ratio = 0.9;  ///< nearest over second-nearest descriptor distance
+  PlacePassOptions passes;  ///< when two poses see the same place
+  double search_px = 5.0;   ///< around the predicted pixel, half-size image
+  int max_hamming = 90;     ///< of 512 bits
+  double max_ratio = 0.9;   ///< nearest over second-nearest descriptor distance
   int num_threads = 0;
 };
 

@@ -71,9 +71,9 @@ TEST(StatedMounting, ImagesAreReadOnTheSharedClock) {
     std::istringstream rows(read_text(d / camera / "data.csv"));
     for (std::string row; std::getline(rows, row);) {
       const auto comma = row.find(',');
-      late += row.front() == '#' ? row
-                                 : std::to_string(std::stoll(row.substr(0, comma)) + kLateNs) +
-                                       row.substr(comma);
+      late += row.front() == '#'
+                  ? row
+                  : std::to_string(std::stoll(row.substr(0, comma)) + kLateNs) + row.substr(comma);
       late += '\n';
     }
     write_text(d / camera / "data.csv", late);

@@ -66,7 +66,8 @@ TEST(MotionDoubts, NameTheSensorWithTheSizeAndItsSign) {
   }
 }
 
-// The poses carry the stamps of late images; a model that knows it leaves nothing, without a gyro too.
+// The poses carry the stamps of late images; a model that knows it leaves nothing, without a gyro
+// too.
 TEST(MotionDoubts, OfImagesThatTheModelKnowsToBeLateSayNothingOfTheWheels) {
   for (const bool with_gyro : {true, false}) {
     const test::TemporaryFolder folder;

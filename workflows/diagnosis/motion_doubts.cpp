@@ -25,18 +25,17 @@ std::vector<TimedPose> poses_of_session(const Map& map, int session) {
   return poses;
 }
 
-// The radius of both wheels is the map's scale. An effect that the map or several other names explain
-// as well is a question for a diagnosis, not for one line.
+// The radius of both wheels is the map's scale. An effect that the map or several other names
+// explain as well is a question for a diagnosis, not for one line.
 bool is_sure(const FoundCause& c) {
   constexpr double kLeastNats = 50.0;
   constexpr double kMostP = 1e-4;
   const bool of_motion = c.effect.starts_with("wheels0.") || c.effect.starts_with("steering0.") ||
                          c.effect.starts_with("imu0.");
-  return of_motion && c.effect != "wheels0.radius" && !c.noise && !c.in_place &&
-         c.p <= kMostP && c.evidence >= kLeastNats && c.inseparable.size() < 2 &&
-         std::none_of(c.inseparable.begin(), c.inseparable.end(), [](const std::string& other) {
-           return other.starts_with("map.");
-         });
+  return of_motion && c.effect != "wheels0.radius" && !c.noise && !c.in_place && c.p <= kMostP &&
+         c.evidence >= kLeastNats && c.inseparable.size() < 2 &&
+         std::none_of(c.inseparable.begin(), c.inseparable.end(),
+                      [](const std::string& other) { return other.starts_with("map."); });
 }
 
 Problem doubt(const Drive& drive,
@@ -93,7 +92,8 @@ std::vector<Problem> motion_doubts(const Map& map, const Drive& drive, const Eff
     if (!is_sure(c)) continue;
     const auto of_cause = std::find_if(words.begin(), words.end(),
                                        [&](const Advice& a) { return a.effect == c.effect; });
-    if (of_cause != words.end()) doubts.push_back(doubt(drive, c, *of_cause, options.known, !streams.gyro.empty()));
+    if (of_cause != words.end())
+      doubts.push_back(doubt(drive, c, *of_cause, options.known, !streams.gyro.empty()));
   }
   return doubts;
 }

@@ -71,8 +71,8 @@ std::vector<SessionSightings> by_session(const Map& map,
     (void)sightings_of(all, name);
   }
   for (Detection row : detections) {
-    const auto session = std::find_if(
-        map.sessions.begin(), map.sessions.end(), [&](const Session& one) {
+    const auto session =
+        std::find_if(map.sessions.begin(), map.sessions.end(), [&](const Session& one) {
           const std::int64_t t_ns = row.t_ns + image_offset_ns(one.rig);
           return t_ns >= one.t_begin_ns && t_ns <= one.t_end_ns;
         });

@@ -49,10 +49,10 @@ TEST(Covariance, BlockCholeskySolvesAndInvertsAsDenseAlgebraDoes) {
   for (const auto& [a, c] : pairs) {
     bool transposed = false;
     const Matrix6d stored = sparse.block(a, c, transposed);
-    EXPECT_LT(((transposed ? Matrix6d(stored.transpose()) : stored) -
-               inverse.block<6, 6>(6 * a, 6 * c))
-                  .norm(),
-              1e-10 * inverse.norm());
+    EXPECT_LT(
+        ((transposed ? Matrix6d(stored.transpose()) : stored) - inverse.block<6, 6>(6 * a, 6 * c))
+            .norm(),
+        1e-10 * inverse.norm());
   }
   EXPECT_EQ(by_one.inverse_diagonal(1), diagonal);
 }

@@ -123,9 +123,10 @@ TEST(PassGroups, TakeAllPassesTogetherWhereTheyAreAsked) {
   options.passes_together = 0;
   const BundleStage stage = make_bundle(laps.input, laps.poses, laps.tracks, options);
   const auto seen = laps_of_points(stage);
-  EXPECT_GT(std::count_if(seen.begin(), seen.end(),
-                          [](const std::set<int>& s) { return static_cast<int>(s.size()) == kLapCount; }),
-            50);
+  EXPECT_GT(
+      std::count_if(seen.begin(), seen.end(),
+                    [](const std::set<int>& s) { return static_cast<int>(s.size()) == kLapCount; }),
+      50);
 }
 
 TEST(PassGroups, ATracksPlaceIsTheMeanOfItsPointsByTheirViews) {
