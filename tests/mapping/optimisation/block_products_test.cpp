@@ -59,8 +59,7 @@ TEST(BlockProducts, ProductsWithRowsAreTheSumsInOrderToTheLastBit) {
     }
 }
 
-// Two columns of rows 2, 5, 6, of which the first two are columns of the target, with rows 2, 5,
-// 6, 7.
+// Two columns with rows 2, 5, 6. Rows 2 and 5 are columns of the target, whose rows are 2, 5, 6, 7.
 TEST(BlockProducts, APanelIsTakenOffTheBlocksItsRowsSay) {
   const std::vector<double> L = any_values(2 * 3 * 36, 4);
   const std::array<const double*, 2> source{L.data(), L.data() + 3 * 36};
