@@ -85,7 +85,10 @@ bool doubts_a_camera(const std::vector<Problem>& warnings, const std::filesystem
     const std::string name = file.filename().string();
     if (!name.starts_with("cam") || name.find_first_not_of("0123456789", 3) != std::string::npos)
       return false;
-    return file.parent_path() == drive || file.parent_path().parent_path() == drive;
+    const auto is_drive = [&](const std::filesystem::path& folder) {
+      return (folder / "").lexically_normal() == (drive / "").lexically_normal();
+    };
+    return is_drive(file.parent_path()) || is_drive(file.parent_path().parent_path());
   });
 }
 

@@ -11,7 +11,7 @@ namespace {
 // Sums over one camera's observations.
 struct CameraSums {
   std::size_t fitting = 0;
-  std::size_t last_point = 0;  // counted already, plus 1
+  std::size_t last_corner = 0;  // counted already, plus 1
   Eigen::Vector2d residual = Eigen::Vector2d::Zero();
   double radial = 0.0;
   double tangential = 0.0;
@@ -30,8 +30,11 @@ void add_view(const BundleStage& stage,
       mounted.camera.project(T_map_camera.inverse() * stage.problem.points[point].p_map);
   if (!predicted) return;
   ++sums.fitting;
-  if (sums.last_point != point + 1) ++figures.landmarks;  // observations stand point by point
-  sums.last_point = point + 1;
+  // Observations are in the order of points, and these in that of corners.
+  const int of_point = stage.problem.points[point].corner;
+  const std::size_t corner = of_point < 0 ? point : static_cast<std::size_t>(of_point);
+  if (sums.last_corner != corner + 1) ++figures.landmarks;
+  sums.last_corner = corner + 1;
   const Eigen::Vector2d residual = kFullPerHalfPixel * (view.pixel - *predicted);
   sums.residual += residual;
   const Eigen::Vector2d outwards = (view.pixel - principal_point(mounted.camera)).normalized();

@@ -165,6 +165,7 @@ bool BlockCholesky::factor(int num_threads) {
   parallel_for(workers, static_cast<int>(workers), [&](std::size_t) {
     std::vector<std::size_t> row_of(n, 0);  // of the panel, by row of the matrix
     std::vector<std::size_t> place;
+    place.reserve(n);
     for (std::size_t panel = next++; panel < panels; panel = next++) {
       const std::size_t first = supernodes_[panel];
       const std::size_t width = end_of(panel) - first;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -10,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "mapping/union_find.hpp"
 #include "vo/planar_motion.hpp"
 
 namespace roadbook {
@@ -94,7 +96,8 @@ constexpr int kPassGapKeyframes = 20;
 // Key points of one corner that may become a point of the problem.
 struct Candidate {
   std::size_t track;
-  int group;  // of passes
+  bool revisited;  // by the views of this candidate
+  int group;       // of passes
   std::vector<KeyPointId> views;
 };
 
@@ -167,17 +170,50 @@ void add_candidates(std::size_t track,
     auto& views = by_group[groups.group_of(pass.nearest)];
     views.insert(views.end(), pass.views.begin(), pass.views.end());
   }
-  for (const PassViews& pass : passes)
-    if (const auto next = groups.next_of(pass.nearest))
-      if (const auto found = by_group.find(*next); found != by_group.end())
-        found->second.insert(found->second.end(), pass.views.begin(), pass.views.end());
+  // The pass that holds two groups together: if the corner was not found in it, the last one
+  // before.
+  std::map<int, const PassViews*> last_of, tie_of;
+  for (const PassViews& pass : passes) {
+    last_of[groups.group_of(pass.nearest)] = &pass;
+    if (const auto next = groups.next_of(pass.nearest)) tie_of[*next] = &pass;
+  }
+  for (auto group = by_group.begin(); group != by_group.end(); ++group) {
+    if (group == by_group.begin()) continue;
+    const auto tie = tie_of.find(group->first);
+    const PassViews& shared =
+        tie != tie_of.end() ? *tie->second : *last_of.at(std::prev(group)->first);
+    group->second.insert(group->second.end(), shared.views.begin(), shared.views.end());
+  }
   for (auto& [group, views] : by_group) {
     if (views.size() < 2) continue;
     std::sort(views.begin(), views.end(), [](const KeyPointId& a, const KeyPointId& b) {
       return std::tuple(a.keyframe, a.camera) < std::tuple(b.keyframe, b.camera);
     });
-    candidates.push_back({track, group, std::move(views)});
+    const bool one_pass =
+        by_group.size() > 1 && views.back().keyframe - views.front().keyframe <= kPassGapKeyframes;
+    candidates.push_back({track, !one_pass, group, std::move(views)});
   }
+}
+
+// Parts of the drives that no track joins have frames of their own, which may lie on each other:
+// here they are kept far apart.
+std::vector<Eigen::Isometry3d> with_pieces_apart(
+    const MappingInput& input,
+    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+    const std::vector<JoinedTrack>& tracks) {
+  constexpr double kApart_m = 1e6;
+  UnionFind sets(T_map_vehicle.size());
+  for (std::size_t k = 1; k < T_map_vehicle.size(); ++k)
+    if (input.session[k] == input.session[k - 1] && !input.odometry.keyframes[k].after_gap)
+      sets.join(static_cast<int>(k) - 1, static_cast<int>(k));
+  for (const JoinedTrack& track : tracks)
+    for (std::size_t v = 1; v < track.views.size(); ++v)
+      sets.join(track.views[v - 1].keyframe, track.views[v].keyframe);
+  const std::vector<int> piece = sets.numbers();
+  std::vector<Eigen::Isometry3d> apart = T_map_vehicle;
+  for (std::size_t k = 0; k < apart.size(); ++k)
+    apart[k].pretranslate(Eigen::Vector3d(kApart_m * piece[k], 0.0, 0.0));
+  return apart;
 }
 
 std::vector<Candidate> candidates_of(const std::vector<Eigen::Isometry3d>& T_map_vehicle,
@@ -200,8 +236,9 @@ std::vector<std::size_t> by_worth(const std::vector<JoinedTrack>& tracks,
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto worth = [&](std::size_t c) {
-      return std::tuple(gives_scale[c], tracks[candidates[c].track].revisited,
-                        candidates[c].views.size());
+      const Candidate& one = candidates[c];
+      return std::tuple(gives_scale[c], one.revisited && tracks[one.track].revisited,
+                        one.views.size());
     };
     return worth(a) > worth(b);
   });
@@ -266,20 +303,21 @@ BundleStage make_bundle(const MappingInput& input,
   for (const auto& T : T_map_vehicle) stage.problem.poses.push_back({T, false});
   add_motions(input, options, stage);
 
-  const PassGroups groups(options.passes_together > 0
-                              ? pass_numbers(input, T_map_vehicle, options.passes)
-                              : std::vector<int>(T_map_vehicle.size(), 0),
-                          options.passes_together);
+  const PassGroups groups(
+      options.passes_together > 0
+          ? pass_numbers(input, with_pieces_apart(input, T_map_vehicle, tracks), options.passes)
+          : std::vector<int>(T_map_vehicle.size(), 0),
+      options.passes_together);
   const auto candidates = candidates_of(T_map_vehicle, tracks, groups, options);
   const auto views = view_from_above(input, T_map_vehicle, tracks, options.ground);
   const double level = ground_level(views, options.ground);
   // Without wheels, the ground is a reference only where the cameras' height above it is known.
   const auto is_ground = [&](const Candidate& c) {
-    if (!on_ground(views[c.track], level, options.ground) ||
-        !groups.holds(c.group, views[c.track].keyframe))
-      return false;
+    if (!on_ground(views[c.track], level, options.ground)) return false;
     const auto session = static_cast<std::size_t>(
         input.session[static_cast<std::size_t>(tracks[c.track].views.front().keyframe)]);
+    // With wheels the scale is known without a pose of another group.
+    if (input.has_wheels[session] && !groups.holds(c.group, views[c.track].keyframe)) return false;
     return input.has_wheels[session] || known_camera_height(input.half_rigs[session]);
   };
   std::vector<std::uint8_t> gives_scale;

@@ -74,7 +74,10 @@ Evidence evidence_of(const MappingInput& input, const Adjusted& adjusted) {
     if (!adjusted.result.inlier[i]) continue;
     const auto k = static_cast<std::size_t>(observations[i].pose);
     ++evidence.views[k];
-    evidence.landmarks[static_cast<std::size_t>(input.session[k])].insert(observations[i].point);
+    const int point = observations[i].point;
+    const int corner = adjusted.stage.problem.points[static_cast<std::size_t>(point)].corner;
+    evidence.landmarks[static_cast<std::size_t>(input.session[k])].insert(corner < 0 ? point
+                                                                                     : corner);
   }
   return evidence;
 }

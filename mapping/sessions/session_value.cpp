@@ -195,6 +195,7 @@ BundleStageOptions options_of_thinned(BundleStageOptions options, int step) {
   options.feature_sigma_px /= root;
   options.bundle.loss_width *= root;
   options.reach_keyframes = std::max(1, options.reach_keyframes / step);
+  options.passes_together = 0;  // no session may be the only tie of others
   return options;
 }
 

@@ -1,6 +1,7 @@
 #include "workflows/labels/people_images.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/parallel.hpp"
 #include "mapping/session_car.hpp"
@@ -34,7 +35,7 @@ PeopleImages::PeopleImages(const Map* map,
     if (!drive) continue;
     const SessionTrack track(*map, static_cast<int>(s));
     const auto cameras = static_cast<int>(map->sessions[s].rig.cameras.size());
-    std::int64_t next = 0;
+    std::int64_t next = std::numeric_limits<std::int64_t>::min();
     for (std::size_t f = 0; f < drive->frame_count(); ++f) {
       const std::int64_t t = drive->frame_stamp_ns(f);
       if (t < next || !track.at(t)) continue;

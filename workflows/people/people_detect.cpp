@@ -101,7 +101,7 @@ PeopleSession::PeopleSession(const Map& map,
   for (std::size_t c = 0; c < rig.cameras.size(); ++c)
     cameras_.emplace_back(rig.cameras[c], c < masks.size() ? masks[c] : cv::Mat());
   const SessionTrack track(map, session);
-  std::int64_t next = 0;
+  std::int64_t next = std::numeric_limits<std::int64_t>::min();
   for (std::size_t f = 0; f < drive.frame_count(); ++f) {
     const std::int64_t t = drive.frame_stamp_ns(f);
     if (t < next) continue;

@@ -15,6 +15,7 @@ FoundCause cause(const std::string& effect, double size, double half_width) {
   c.low = size - half_width;
   c.high = size + half_width;
   c.evidence = 40.0;
+  c.p = 1e-12;
   c.gain.total = 40.0;
   c.gain.low = 20.0;
   const auto declared = declared_effect(effect);
@@ -112,6 +113,7 @@ TEST(Advice, SaysWhatLooksTheSameAndWhichDriveDecides) {
   EXPECT_TRUE(advice.action.ends_with(", if it is this one; three stops would separate them"));
   FoundCause weak = cause("wheels0.radius", 0.02, 0.002);
   weak.evidence = 5.0;
+  weak.p = 1e-3;
   EXPECT_EQ(advice_for(weak, stated_vehicle()).certainty, "likely");
 }
 

@@ -100,6 +100,7 @@ Evidenced with_views(const std::vector<int>& views, int landmarks, double camera
   e.input = keyframes_of(std::vector<int>(views.size(), 0));
   e.input.half_rigs[0].cameras.resize(2);
   e.adjusted.stage.camera_base = {0};
+  e.adjusted.stage.problem.points.resize(static_cast<std::size_t>(landmarks));
   int next = 0;
   for (std::size_t k = 0; k < views.size(); ++k)
     for (int v = 0; v < views[k]; ++v) {

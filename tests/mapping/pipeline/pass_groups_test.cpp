@@ -91,21 +91,18 @@ TEST(PassNumbers, OfTheOppositeDirectionAreOfAnotherPlace) {
 TEST(PassGroups, CoupleFourPassesAtMostAndLeaveNoneOut) {
   const ManyLaps laps = drive_many_laps();
   const BundleStage stage = make_bundle(laps.input, laps.poses, laps.tracks, {});
-  std::vector<std::set<int>> joined(kLapCount);  // laps that share points with each lap
-  for (const std::set<int>& seen : laps_of_points(stage))
-    for (const int a : seen)
-      for (const int b : seen)
-        if (a != b) joined[static_cast<std::size_t>(a)].insert(b);
-  for (int lap = 0; lap < kLapCount; ++lap) {
-    const std::set<int>& others = joined[static_cast<std::size_t>(lap)];
-    ASSERT_FALSE(others.empty()) << lap;
-    // At the seam of the laps a group may begin one lap earlier and end one lap later.
-    EXPECT_GE(*others.begin(), lap - 5) << lap;
-    EXPECT_LE(*others.rbegin(), lap + 5) << lap;
-    if (lap > 0) {
-      EXPECT_TRUE(others.contains(lap - 1)) << lap;
-    }
-  }
+  const auto seen = laps_of_points(stage);
+  // At the seam of the laps a group may begin one lap earlier and end one lap later. A corner that
+  // was not found in the pass between two groups ties those before and after it.
+  const auto is_wide = [](const std::set<int>& s) { return *s.rbegin() - *s.begin() > 5; };
+  EXPECT_LT(std::count_if(seen.begin(), seen.end(), is_wide),
+            static_cast<std::ptrdiff_t>(seen.size() / 50));
+  for (int lap = 1; lap < kLapCount; ++lap)
+    EXPECT_GT(std::count_if(
+                  seen.begin(), seen.end(),
+                  [&](const std::set<int>& s) { return s.contains(lap) && s.contains(lap - 1); }),
+              20)
+        << lap;
   std::map<int, int> views;
   for (const BundleObservation& o : stage.problem.observations) ++views[o.pose];
   for (int k = 0; k < kLapCount * kLapSteps; ++k) EXPECT_GE(views[k], 20) << k;
@@ -115,6 +112,40 @@ TEST(PassGroups, CoupleFourPassesAtMostAndLeaveNoneOut) {
               stage.problem.points[p].corner == stage.problem.points[p - 1].corner)
         << p;
   EXPECT_TRUE(std::is_sorted(stage.track_of_point.begin(), stage.track_of_point.end()));
+}
+
+// The fourth lap is dark and finds no corner again: laps before and after it stay tied.
+TEST(PassGroups, TieLapsAcrossOneThatSawNothing) {
+  ManyLaps laps = drive_many_laps();
+  for (JoinedTrack& track : laps.tracks)
+    std::erase_if(track.views, [](const KeyPointId& v) { return lap_of(v.keyframe) == 3; });
+  const BundleStage stage = make_bundle(laps.input, laps.poses, laps.tracks, {});
+  const auto seen = laps_of_points(stage);
+  for (const int later : {4, 5})
+    EXPECT_TRUE(std::any_of(seen.begin(), seen.end(), [&](const std::set<int>& s) {
+      return s.contains(later) && *s.begin() < 3;
+    })) << later;
+}
+
+// Two places of the same coordinates that nothing joins: six laps each are passes 0 to 5 of each.
+TEST(PassGroups, OfPiecesThatLieOnEachOtherCountApart) {
+  ManyLaps laps = drive_many_laps();
+  constexpr int kFirst = 6 * kLapSteps;
+  laps.input.odometry.keyframes[kFirst].after_gap = true;
+  std::vector<JoinedTrack> parts;
+  for (const JoinedTrack& track : laps.tracks)
+    for (const bool later : {false, true}) {
+      JoinedTrack part = track;
+      std::erase_if(part.views,
+                    [&](const KeyPointId& v) { return (v.keyframe >= kFirst) != later; });
+      if (part.views.size() > 1) parts.push_back(std::move(part));
+    }
+  const BundleStage stage = make_bundle(laps.input, laps.poses, parts, {});
+  const auto seen = laps_of_points(stage);
+  // Laps 6 to 9 are one group of their piece; counted together they would be in two.
+  EXPECT_TRUE(std::any_of(seen.begin(), seen.end(), [](const std::set<int>& s) {
+    return s == std::set<int>{6, 7, 8, 9};
+  }));
 }
 
 TEST(PassGroups, TakeAllPassesTogetherWhereTheyAreAsked) {
