@@ -292,8 +292,7 @@ class Search {
   // Removes catalogued effects that are not significant once errors may last, neither beside all
   // others nor beside those that stay. Only what remains when every effect is fitted says whether
   // errors last. Generic effects of this kind stay in the model, so that no other effect absorbs
-  // their part of the data, but are no findings. Where one effect of a pair that imitates a third
-  // is removed, the third takes the other's place.
+  // their part of the data, but are no findings.
   void doubt_what_lasting_errors_show() {
     const std::map<std::string, double> first = p_where_errors_last();
     std::map<std::string, double> now = first;
@@ -317,8 +316,6 @@ class Search {
       drop(model, worst);
       fit(model, 3);
       set_model(std::move(model));
-      replace_weaker_effects(0);
-      prefer_smallest_sizes();
       now = p_where_errors_last();
     }
   }
