@@ -13,25 +13,13 @@ import argparse
 import json
 import os
 import re
-import subprocess
 import sys
 import tempfile
 
+from compare import run
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 SCENARIO = os.path.join(HERE, "..", "sim", "scenarios", "zurich.yaml")
-
-
-def run(command):
-    """Standard output of a command, its processor seconds and its peak memory [MB]."""
-    with tempfile.TemporaryFile() as out:
-        child = subprocess.Popen(command, stdout=out)
-        _, status, usage = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
-        if child.returncode != 0:
-            sys.exit("error: %s: got exit status %d, want 0" % (" ".join(command), child.returncode))
-        out.seek(0)
-        text = out.read().decode("utf-8")
-    return text, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024.0
 
 
 def drive_of(program, laps, folder):

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -280,12 +279,11 @@ class Search {
   }
 
   // P-values of the accepted effects, corrected, where errors may last; none where they do not.
-  std::map<std::string, double> p_where_errors_last() {
-    std::map<std::string, double> p;
+  std::vector<double> p_where_errors_last() {
+    std::vector<double> p;
     if (const auto white = where_errors_last())
       for (std::size_t a = 0; a < model_.accepted.size(); ++a)
-        p[model_.accepted[a].candidate.name] =
-            size_by_blocks(model_, *white, a).p * table().tests();
+        p.push_back(size_by_blocks(model_, *white, a).p * table().tests());
     return p;
   }
 
@@ -294,26 +292,24 @@ class Search {
   // errors last. Generic effects of this kind stay in the model, so that no other effect absorbs
   // their part of the data, but are no findings.
   void doubt_what_lasting_errors_show() {
-    const std::map<std::string, double> first = p_where_errors_last();
-    std::map<std::string, double> now = first;
+    const auto is_name = [&](std::size_t a) {
+      return model_.accepted[a].candidate.kind != CandidateKind::kGrammar;
+    };
+    std::vector<double> first = p_where_errors_last();
+    std::vector<double> now = first;
     for (;;) {
       double most = kMostLastingP;
-      std::size_t worst = model_.accepted.size();
-      for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
-        const Candidate& candidate = model_.accepted[a].candidate;
-        const auto there = now.find(candidate.name);
-        if (candidate.kind == CandidateKind::kGrammar || there == now.end()) continue;
-        const auto before = first.find(candidate.name);
-        const double p =
-            before == first.end() ? there->second : std::min(there->second, before->second);
-        if (p <= most) continue;
-        most = p;
-        worst = a;
-      }
-      if (worst == model_.accepted.size()) return;
+      std::size_t worst = now.size();
+      for (std::size_t a = 0; a < now.size(); ++a)
+        if (const double p = std::min(now[a], first[a]); is_name(a) && p > most) {
+          most = p;
+          worst = a;
+        }
+      if (worst == now.size()) return;
       doubted_.insert(model_.accepted[worst].candidate.name);
       CauseModel model = model_;
       drop(model, worst);
+      first.erase(first.begin() + static_cast<std::ptrdiff_t>(worst));
       fit(model, 3);
       set_model(std::move(model));
       now = p_where_errors_last();
@@ -322,26 +318,18 @@ class Search {
 
   // What the lasting errors took from the findings is neither found nor absent.
   void add_doubted(SearchResult& result) const {
-    const auto is_there = [&](const std::string& name) {
-      return std::any_of(result.verdicts.begin(), result.verdicts.end(),
-                         [&](const AcceptedEffect& v) {
-                           return v.cause.candidate.name == name ||
-                                  std::find(v.inseparable.begin(), v.inseparable.end(), name) !=
-                                      v.inseparable.end();
-                         });
-    };
     for (const std::string& name : doubted_) {
-      if (is_there(name)) continue;
+      const bool is_found =
+          std::any_of(result.verdicts.begin(), result.verdicts.end(), [&](const AcceptedEffect& v) {
+            const auto& others = v.inseparable;
+            return v.cause.candidate.name == name ||
+                   std::find(others.begin(), others.end(), name) != others.end();
+          });
+      if (is_found) continue;
       drop_name(result, name);
       result.hidden.push_back({name, "errors of the reference that last"});
+      std::erase_if(result.doubts, [&](const FitWarning& d) { return d.name == name; });
     }
-    std::erase_if(result.doubts, [&](const FitWarning& d) {
-      return doubted_.contains(d.name) && !is_accepted_name(d.name);
-    });
-  }
-  [[nodiscard]] bool is_accepted_name(const std::string& name) const {
-    return std::any_of(model_.accepted.begin(), model_.accepted.end(),
-                       [&](const Accepted& a) { return a.candidate.name == name; });
   }
 
   static void drop_name(SearchResult& result, const std::string& name) {

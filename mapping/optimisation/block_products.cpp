@@ -12,23 +12,32 @@ using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
 constexpr std::size_t kSide = 6;
 
-// C -= A B^T of 6 x kInner blocks.
-template <std::size_t kInner>
-[[gnu::always_inline]] inline void subtract_outer(const double* A, const double* B, double* C) {
-  Four upper[kInner];
-  Two lower[kInner];
+// The columns of a block of six rows, each in two vectors.
+template <std::size_t kColumns>
+struct Columns {
+  Four upper[kColumns];
+  Two lower[kColumns];
+
+  [[gnu::always_inline]] inline explicit Columns(const double* A) {
 #pragma GCC unroll 6
-  for (std::size_t k = 0; k < kInner; ++k) {
-    upper[k] = *reinterpret_cast<const Four*>(A + kSide * k);
-    lower[k] = *reinterpret_cast<const Two*>(A + kSide * k + 4);
+    for (std::size_t k = 0; k < kColumns; ++k) {
+      upper[k] = *reinterpret_cast<const Four*>(A + kSide * k);
+      lower[k] = *reinterpret_cast<const Two*>(A + kSide * k + 4);
+    }
   }
+};
+
+// C -= A B^T of 6 x 3 blocks.
+[[gnu::always_inline]] inline void subtract_outer(const double* A, const double* B, double* C) {
+  constexpr std::size_t kInner = 3;
+  const Columns<kInner> a(A);
   for (std::size_t c = 0; c < kSide; ++c) {
-    Four u = upper[0] * B[c];
-    Two l = lower[0] * B[c];
+    Four u = a.upper[0] * B[c];
+    Two l = a.lower[0] * B[c];
 #pragma GCC unroll 6
     for (std::size_t k = 1; k < kInner; ++k) {
-      u += upper[k] * B[c + kSide * k];
-      l += lower[k] * B[c + kSide * k];
+      u += a.upper[k] * B[c + kSide * k];
+      l += a.lower[k] * B[c + kSide * k];
     }
     *reinterpret_cast<Four*>(C + kSide * c) -= u;
     *reinterpret_cast<Two*>(C + kSide * c + 4) -= l;
@@ -40,21 +49,15 @@ template <std::size_t kInner>
                                                const double* B,
                                                std::size_t width,
                                                double* C) {
-  Four upper[kSide];
-  Two lower[kSide];
-#pragma GCC unroll 6
-  for (std::size_t k = 0; k < kSide; ++k) {
-    upper[k] = *reinterpret_cast<const Four*>(A + kSide * k);
-    lower[k] = *reinterpret_cast<const Two*>(A + kSide * k + 4);
-  }
+  const Columns<kSide> a(A);
   for (std::size_t c = 0; c < kSide * width; ++c) {
     const double* b = B + kSide * c;
-    Four u = upper[0] * b[0];
-    Two l = lower[0] * b[0];
+    Four u = a.upper[0] * b[0];
+    Two l = a.lower[0] * b[0];
 #pragma GCC unroll 6
     for (std::size_t k = 1; k < kSide; ++k) {
-      u += upper[k] * b[k];
-      l += lower[k] * b[k];
+      u += a.upper[k] * b[k];
+      l += a.lower[k] * b[k];
     }
     *reinterpret_cast<Four*>(C + kSide * c) += u;
     *reinterpret_cast<Two*>(C + kSide * c + 4) += l;
@@ -183,7 +186,7 @@ ROADBOOK_CLONES void add_symmetric(const SymmetricProduct& product) {
 }
 
 ROADBOOK_CLONES void subtract_outer_63(const double* A, const double* B, double* C) {
-  subtract_outer<3>(A, B, C);
+  subtract_outer(A, B, C);
 }
 
 ROADBOOK_CLONES void subtract_product(const double* A,

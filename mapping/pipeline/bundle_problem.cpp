@@ -159,8 +159,7 @@ std::vector<PassViews> views_by_pass(const JoinedTrack& track,
   return passes;
 }
 
-// Candidates of one corner: one in each group of passes that saw it, if not by its first pass
-// alone.
+// Candidates of one corner: one in each group of passes that saw it.
 void add_candidates(std::size_t track,
                     const std::vector<PassViews>& passes,
                     const PassGroups& groups,
@@ -170,19 +169,23 @@ void add_candidates(std::size_t track,
     auto& views = by_group[groups.group_of(pass.nearest)];
     views.insert(views.end(), pass.views.begin(), pass.views.end());
   }
-  // The pass that holds two groups together: if the corner was not found in it, the last one
-  // before.
+  // The pass that holds two groups together; for a lone pass behind one that did not find the
+  // corner, the last that did.
   std::map<int, const PassViews*> last_of, tie_of;
+  std::map<int, int> passes_of;
   for (const PassViews& pass : passes) {
-    last_of[groups.group_of(pass.nearest)] = &pass;
+    const int group = groups.group_of(pass.nearest);
+    last_of[group] = &pass;
+    ++passes_of[group];
     if (const auto next = groups.next_of(pass.nearest)) tie_of[*next] = &pass;
   }
   for (auto group = by_group.begin(); group != by_group.end(); ++group) {
-    if (group == by_group.begin()) continue;
     const auto tie = tie_of.find(group->first);
-    const PassViews& shared =
-        tie != tie_of.end() ? *tie->second : *last_of.at(std::prev(group)->first);
-    group->second.insert(group->second.end(), shared.views.begin(), shared.views.end());
+    const PassViews* shared = tie != tie_of.end() ? tie->second : nullptr;
+    if (shared == nullptr && group != by_group.begin() && passes_of[group->first] == 1)
+      shared = last_of.at(std::prev(group)->first);
+    if (shared != nullptr)
+      group->second.insert(group->second.end(), shared->views.begin(), shared->views.end());
   }
   for (auto& [group, views] : by_group) {
     if (views.size() < 2) continue;

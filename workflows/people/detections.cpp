@@ -70,6 +70,7 @@ std::vector<SessionSightings> by_session(const Map& map,
     if (!known) throw InvalidOption("--observed", name, "the name of a session of the map");
     (void)sightings_of(all, name);
   }
+  // Rows carry the stamps of the images as written.
   for (Detection row : detections) {
     const auto session =
         std::find_if(map.sessions.begin(), map.sessions.end(), [&](const Session& one) {
