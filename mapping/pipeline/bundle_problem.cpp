@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -169,24 +168,10 @@ void add_candidates(std::size_t track,
     auto& views = by_group[groups.group_of(pass.nearest)];
     views.insert(views.end(), pass.views.begin(), pass.views.end());
   }
-  // The pass that holds two groups together; for a lone pass behind one that did not find the
-  // corner, the last that did.
-  std::map<int, const PassViews*> last_of, tie_of;
-  std::map<int, int> passes_of;
-  for (const PassViews& pass : passes) {
-    const int group = groups.group_of(pass.nearest);
-    last_of[group] = &pass;
-    ++passes_of[group];
-    if (const auto next = groups.next_of(pass.nearest)) tie_of[*next] = &pass;
-  }
-  for (auto group = by_group.begin(); group != by_group.end(); ++group) {
-    const auto tie = tie_of.find(group->first);
-    const PassViews* shared = tie != tie_of.end() ? tie->second : nullptr;
-    if (shared == nullptr && group != by_group.begin() && passes_of[group->first] == 1)
-      shared = last_of.at(std::prev(group)->first);
-    if (shared != nullptr)
-      group->second.insert(group->second.end(), shared->views.begin(), shared->views.end());
-  }
+  for (const PassViews& pass : passes)
+    if (const auto next = groups.next_of(pass.nearest))
+      if (const auto found = by_group.find(*next); found != by_group.end())
+        found->second.insert(found->second.end(), pass.views.begin(), pass.views.end());
   for (auto& [group, views] : by_group) {
     if (views.size() < 2) continue;
     std::sort(views.begin(), views.end(), [](const KeyPointId& a, const KeyPointId& b) {
@@ -198,25 +183,46 @@ void add_candidates(std::size_t track,
   }
 }
 
-// Parts of the drives that no track joins have frames of their own, which may lie on each other:
-// here they are kept far apart.
-std::vector<Eigen::Isometry3d> with_pieces_apart(
-    const MappingInput& input,
-    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-    const std::vector<JoinedTrack>& tracks) {
-  constexpr double kApart_m = 1e6;
-  UnionFind sets(T_map_vehicle.size());
-  for (std::size_t k = 1; k < T_map_vehicle.size(); ++k)
+// Parts of the drives that tracks or odometry join; others have frames of their own.
+std::vector<int> joined_pieces(const MappingInput& input, const std::vector<JoinedTrack>& tracks) {
+  UnionFind sets(input.odometry.keyframes.size());
+  for (std::size_t k = 1; k < input.odometry.keyframes.size(); ++k)
     if (input.session[k] == input.session[k - 1] && !input.odometry.keyframes[k].after_gap)
       sets.join(static_cast<int>(k) - 1, static_cast<int>(k));
   for (const JoinedTrack& track : tracks)
     for (std::size_t v = 1; v < track.views.size(); ++v)
       sets.join(track.views[v - 1].keyframe, track.views[v].keyframe);
-  const std::vector<int> piece = sets.numbers();
-  std::vector<Eigen::Isometry3d> apart = T_map_vehicle;
-  for (std::size_t k = 0; k < apart.size(); ++k)
-    apart[k].pretranslate(Eigen::Vector3d(kApart_m * piece[k], 0.0, 0.0));
-  return apart;
+  return sets.numbers();
+}
+
+// Whether the corners of each keyframe were found in other passes. A pass in the dark, say, ties
+// nothing together.
+std::vector<bool> are_tied(std::size_t keyframes, const std::vector<JoinedTrack>& tracks) {
+  constexpr int kLeastCorners = 10;
+  std::vector<int> corners(keyframes, 0);
+  for (const JoinedTrack& track : tracks) {
+    const auto& views = track.views;
+    const bool one_pass = std::adjacent_find(views.begin(), views.end(),
+                                             [](const KeyPointId& a, const KeyPointId& b) {
+                                               return b.keyframe - a.keyframe > kPassGapKeyframes;
+                                             }) == views.end();
+    if (one_pass) continue;
+    for (const KeyPointId& view : views) ++corners[static_cast<std::size_t>(view.keyframe)];
+  }
+  std::vector<bool> tied;
+  for (const int count : corners) tied.push_back(count >= kLeastCorners);
+  return tied;
+}
+
+PassGroups groups_of(const MappingInput& input,
+                     const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                     const std::vector<JoinedTrack>& tracks,
+                     const BundleStageOptions& options) {
+  if (options.passes_together <= 0)
+    return {std::vector<int>(T_map_vehicle.size(), 0), options.passes_together};
+  return {pass_numbers(input, T_map_vehicle, joined_pieces(input, tracks),
+                       are_tied(T_map_vehicle.size(), tracks), options.passes),
+          options.passes_together};
 }
 
 std::vector<Candidate> candidates_of(const std::vector<Eigen::Isometry3d>& T_map_vehicle,
@@ -306,11 +312,7 @@ BundleStage make_bundle(const MappingInput& input,
   for (const auto& T : T_map_vehicle) stage.problem.poses.push_back({T, false});
   add_motions(input, options, stage);
 
-  const PassGroups groups(
-      options.passes_together > 0
-          ? pass_numbers(input, with_pieces_apart(input, T_map_vehicle, tracks), options.passes)
-          : std::vector<int>(T_map_vehicle.size(), 0),
-      options.passes_together);
+  const PassGroups groups = groups_of(input, T_map_vehicle, tracks, options);
   const auto candidates = candidates_of(T_map_vehicle, tracks, groups, options);
   const auto views = view_from_above(input, T_map_vehicle, tracks, options.ground);
   const double level = ground_level(views, options.ground);

@@ -35,6 +35,8 @@ void visit_earlier_passes(const MappingInput& input,
 
 std::vector<int> pass_numbers(const MappingInput& input,
                               const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                              const std::vector<int>& piece,
+                              const std::vector<bool>& counts,
                               const PlacePassOptions& options) {
   constexpr double kBeside_m = 0.5;
   constexpr double kBesideSpacings = 0.6;
@@ -42,6 +44,7 @@ std::vector<int> pass_numbers(const MappingInput& input,
   std::vector<bool> is_beside(T_map_vehicle.size(), false);
   visit_earlier_passes(input, T_map_vehicle, options, [&](const EarlierPass& pair) {
     const std::size_t k = pair.keyframe;
+    if (!counts[pair.earlier] || piece[pair.earlier] != piece[k]) return;
     const double spacing =
         k == 0 ? 0.0 : (T_map_vehicle[k].translation() - T_map_vehicle[k - 1].translation()).norm();
     const bool beside = std::abs(pair.way_m.x()) <= std::max(kBeside_m, kBesideSpacings * spacing);

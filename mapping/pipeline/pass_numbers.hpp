@@ -30,9 +30,13 @@ void visit_earlier_passes(const MappingInput& input,
                           const std::function<void(const EarlierPass&)>& visit);
 
 /// Number of earlier passes over the place of each keyframe, counted beside it: 0 in the first
-/// pass. Neighbouring places whose passes began at different times may differ.
+/// pass. Neighbouring places whose passes began at different times may differ. `piece` of each
+/// keyframe: only those of one piece have a common frame and are compared. `counts`: passes of
+/// other keyframes are not counted, although they have a number.
 [[nodiscard]] std::vector<int> pass_numbers(const MappingInput& input,
                                             const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                            const std::vector<int>& piece,
+                                            const std::vector<bool>& counts,
                                             const PlacePassOptions& options);
 
 }  // namespace roadbook
