@@ -1,25 +1,10 @@
 #include <algorithm>
 
+#include "vo/driving_prior.hpp"
 #include "vo/odometry_state.hpp"
 #include "vo/planar_motion.hpp"
 
 namespace roadbook {
-namespace {
-
-// What holds for any car without wheels' odometry: it neither slides sideways nor hops, and tilts
-// little from one frame to the next. Speed and turn stay free.
-Matrix6d driving_information(double distance_m) {
-  const double sigma_side = 0.02 + 0.05 * distance_m;
-  constexpr double kSigmaTilt = 0.02;
-  Matrix6d information = Matrix6d::Zero();
-  const double sigma_up = 2.0 * sigma_side;  // slopes, and the pitch of the camera's mount
-  information(1, 1) = 1.0 / (sigma_side * sigma_side);
-  information(2, 2) = 1.0 / (sigma_up * sigma_up);
-  information(3, 3) = information(4, 4) = 1.0 / (kSigmaTilt * kSigmaTilt);
-  return information;
-}
-
-}  // namespace
 
 Eigen::Isometry3d VisualOdometry::State::predict(const VoFrame& frame) const {
   if (frame.wheels) return last().T_odom_vehicle * planar_transform(*frame.wheels);

@@ -12,6 +12,7 @@
 #include "vo/rig_pose.hpp"
 #include "vo/two_view.hpp"
 #include "vo/visual_odometry.hpp"
+#include "vo/window_adjustment.hpp"
 
 namespace roadbook {
 
@@ -21,6 +22,7 @@ namespace roadbook {
 constexpr double kFirstRadiusPx = 20.0;     // if only a constant velocity predicts the motion
 constexpr double kPredictedRadiusPx = 6.0;  // if the wheels predict the motion
 constexpr double kRefinedRadiusPx = 3.5;    // second search, with the pose of the first
+constexpr int kWindowPoses = 14;            // newest keyframes that are adjusted without wheels
 constexpr std::size_t kFewestPairs = 30;    // matched corners that a first motion needs
 
 [[nodiscard]] std::vector<FeatureGrid> make_grids(const std::vector<Features>& features,
@@ -59,6 +61,10 @@ struct VisualOdometry::State {
   State(Rig half_rig, const VoOptions& vo_options);
 
   const VoKeyframe& last() const { return result.keyframes.back(); }
+  VoKeyframe& last() { return result.keyframes.back(); }
+  const VoKeyframe& keyframe_at(int k) const {
+    return result.keyframes[static_cast<std::size_t>(k)];
+  }
 
   Eigen::Vector3d bearing_of(int camera, const TrackObservation& o) const;
 
@@ -93,9 +99,15 @@ struct VisualOdometry::State {
                   int camera,
                   const Eigen::Vector2f& pixel,
                   const Eigen::Isometry3d& T_odom_new) const;
+  bool has_new_size(int track, const Eigen::Isometry3d& T_odom_new) const;
   void triangulate_tracks(const VoKeyframe& keyframe);
   void forget_lone_tracks();
   void start_tracks(VoKeyframe& keyframe, std::size_t index);
+
+  // Adjustment of the newest keyframes without wheels (odometry_window.cpp).
+  VoWindow newest_window(std::vector<int>& tracks) const;
+  void follow_ground(VoWindow& window);
+  void adjust_newest();
 
   // One frame (visual_odometry.cpp).
   VoOutcome add_waiting(VoFrame&& frame);

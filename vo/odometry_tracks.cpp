@@ -7,7 +7,10 @@
 namespace roadbook {
 namespace {
 constexpr std::size_t kMaxRays = 10;  // of a track, for triangulation
-}
+// Change of a corner's distance over a track without wheels. What is detected as the corner moves
+// with the size of its image: along a street, longer tracks shrink or stretch the way.
+constexpr double kMostRangeRatio = 1.6;
+}  // namespace
 
 bool VisualOdometry::State::consistent(int track_id,
                                        int camera,
@@ -35,18 +38,35 @@ bool VisualOdometry::State::consistent(int track_id,
          tolerance_rad;
 }
 
+bool VisualOdometry::State::has_new_size(int track_id, const Eigen::Isometry3d& T_odom_new) const {
+  const Track& track = result.tracks[static_cast<std::size_t>(track_id)];
+  if (!track.p_odom) return false;
+  const Eigen::Vector3d mount =
+      rig.cameras[static_cast<std::size_t>(track.camera)].T_vehicle_camera.translation();
+  const auto& first = keyframe_at(track.observations.front().keyframe);
+  const double before = (first.T_odom_vehicle * mount - *track.p_odom).norm();
+  const double now = (T_odom_new * mount - *track.p_odom).norm();
+  return now > kMostRangeRatio * before || before > kMostRangeRatio * now;
+}
+
 void VisualOdometry::State::triangulate_tracks(const VoKeyframe& keyframe) {
   std::vector<Ray> rays;
+  const int oldest = static_cast<int>(result.keyframes.size()) - kWindowPoses;
   for (std::size_t c = 0; c < keyframe.tracks.size(); ++c)
     for (const int id : keyframe.tracks[c]) {
       if (id < 0) continue;
       Track& track = result.tracks[static_cast<std::size_t>(id)];
-      const std::size_t count = track.observations.size();
+      // Without wheels, lengths of the window follow the ground, and poses before it stay.
+      std::size_t begin = 0;
+      while (!keyframe.wheels && begin < track.observations.size() &&
+             track.observations[begin].keyframe < oldest)
+        ++begin;
+      const std::size_t count = track.observations.size() - begin;
       if (count < 2) continue;
       rays.clear();
       const std::size_t used = std::min(count, kMaxRays);  // first and last among them
       for (std::size_t r = 0; r < used; ++r) {
-        const std::size_t i = r * (count - 1) / (used - 1);
+        const std::size_t i = begin + r * (count - 1) / (used - 1);
         const TrackObservation& o = track.observations[i];
         const Eigen::Isometry3d T_odom_camera =
             result.keyframes[static_cast<std::size_t>(o.keyframe)].T_odom_vehicle *
@@ -113,7 +133,8 @@ void VisualOdometry::State::accept(VoFrame&& frame, const Matches& matches, VoKe
       if (feature < 0) continue;
       const auto f = static_cast<std::size_t>(feature);
       if (!consistent(id, static_cast<int>(c), frame.features[c].pixels[f],
-                      keyframe.T_odom_vehicle))
+                      keyframe.T_odom_vehicle) ||
+          (!keyframe.wheels && has_new_size(id, keyframe.T_odom_vehicle)))
         continue;
       keyframe.tracks[c][f] = id;
       result.tracks[static_cast<std::size_t>(id)].observations.push_back(
@@ -126,6 +147,7 @@ void VisualOdometry::State::accept(VoFrame&& frame, const Matches& matches, VoKe
   result.keyframes.push_back(std::move(keyframe));
   VoKeyframe& added = result.keyframes.back();
   triangulate_tracks(added);
+  adjust_newest();
   for (auto& tracks : active)
     std::erase_if(tracks, [&](int id) {
       const auto& seen = result.tracks[static_cast<std::size_t>(id)].observations;

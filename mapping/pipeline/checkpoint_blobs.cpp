@@ -87,6 +87,8 @@ void write_keyframe(Writer& w, const VoKeyframe& k) {
   }
   w.matrix(k.information);
   w.value(k.inliers);
+  w.value<std::uint8_t>(k.ground_log_scale ? 1 : 0);
+  w.value(k.ground_log_scale.value_or(0.0));
   w.value(k.travelled_m);
   w.value<std::uint8_t>(k.reversing ? 1 : 0);
   w.value<std::uint8_t>(k.after_gap ? 1 : 0);
@@ -114,6 +116,9 @@ VoKeyframe read_keyframe(Reader& r) {
   }
   r.matrix(k.information);
   k.inliers = r.value<int>();
+  const bool saw_ground = r.value<std::uint8_t>() != 0;
+  const auto log_scale = r.value<double>();
+  if (saw_ground) k.ground_log_scale = log_scale;
   k.travelled_m = r.value<double>();
   k.reversing = r.value<std::uint8_t>() != 0;
   k.after_gap = r.value<std::uint8_t>() != 0;

@@ -67,6 +67,7 @@ std::vector<CameraDoubt> judge_cameras(const MappingInput& input,
   summary.warnings.insert(summary.warnings.end(), idle.begin(), idle.end());
   summary.warnings.insert(summary.warnings.end(), doubts.begin(), doubts.end());
   require_evidence(input, adjusted, summary.cameras, doubts, gate, options.gate);
+  require_possible_motions(input, adjusted.T_map_vehicle, gate);
   return found;
 }
 

@@ -14,12 +14,36 @@ constexpr double kCell = 4.0;
 constexpr double kLargestDrift = 0.7;  // of odometry's scale over a stretch, as a logarithm
 
 constexpr double kLeastHeightM = 0.05;  // of a camera whose height is known
-constexpr double kWindowSigma = 0.03;   // of a window's scale: slopes, kerbs, pitch of the car
+constexpr int kSamePassKeyframes = 60;
+constexpr double kLargestCorrection = 0.2;  // of what the odometry saw ahead, as a logarithm
+constexpr double kWindowSigma = 0.03;       // of a window's scale: slopes, kerbs, pitch of the car
 
 double camera_height(const Rig& rig) {
   double sum = 0.0;
   for (const auto& mounted : rig.cameras) sum += mounted.T_vehicle_camera.translation().z();
   return sum / static_cast<double>(rig.cameras.size());
+}
+
+// Scale of a stretch by what the odometry saw of the ground ahead and beside. That shows more than
+// the points that the car drives over. Empty where it saw too little in half of the keyframes. All
+// see much the same ground: the standard deviation is that of a window.
+std::optional<GroundScale> scale_seen_ahead(const MappingInput& input,
+                                            const std::vector<int>& segments,
+                                            std::size_t begin,
+                                            std::size_t end,
+                                            int segment) {
+  std::vector<double> seen;
+  std::size_t asked = 0;
+  for (std::size_t k = begin; k < end; ++k) {
+    const VoKeyframe& keyframe = input.odometry.keyframes[k];
+    if (segments[k] != segment || keyframe.wheels) continue;
+    ++asked;
+    if (keyframe.ground_log_scale) seen.push_back(*keyframe.ground_log_scale);
+  }
+  if (asked == 0 || 2 * seen.size() < asked) return std::nullopt;
+  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
+  std::nth_element(seen.begin(), middle, seen.end());
+  return GroundScale{std::exp(*middle), 0.0, static_cast<int>(seen.size())};
 }
 
 }  // namespace
@@ -46,6 +70,9 @@ std::vector<GroundView> view_from_above(const MappingInput& input,
     double best = std::hypot(options.ahead_m, options.beside_m);
     keyframes.visit_near(p.head<2>(), [&](int k) {
       if (segments[static_cast<std::size_t>(k)] != segment) return;
+      if (k - tracks[i].views.back().keyframe > options.keyframes_apart ||
+          tracks[i].views.front().keyframe - k > options.keyframes_apart)
+        return;
       const Eigen::Isometry3d& T = T_map_vehicle[static_cast<std::size_t>(k)];
       const Eigen::Vector3d p_vehicle = T.inverse() * p;
       if (std::abs(p_vehicle.x()) > options.ahead_m || std::abs(p_vehicle.y()) > options.beside_m ||
@@ -89,7 +116,9 @@ ScaleProfile ground_scale_profile(const MappingInput& input,
                                   int window) {
   const std::size_t count = T_map_vehicle.size();
   std::vector<std::vector<double>> ratios(count);
-  const auto views = view_from_above(input, T_map_vehicle, tracks);
+  GroundOptions near;
+  near.keyframes_apart = kSamePassKeyframes;
+  const auto views = view_from_above(input, T_map_vehicle, tracks, near);
   for (const auto& view : views) {
     if (view.keyframe < 0) continue;
     const double height = camera_height(input.rig_of(view.keyframe));
@@ -98,10 +127,16 @@ ScaleProfile ground_scale_profile(const MappingInput& input,
   }
   const auto segments = segments_of(input.odometry.keyframes);
   const auto estimate = [&](std::size_t begin, std::size_t end, int segment) {
+    const auto seen = scale_seen_ahead(input, segments, begin, end, segment);
     std::vector<double> all;
     for (std::size_t k = begin; k < end; ++k)
       if (segments[k] == segment) all.insert(all.end(), ratios[k].begin(), ratios[k].end());
-    return ground_scale(std::move(all));
+    if (seen)
+      std::erase_if(all, [&](double ratio) {
+        return !(std::abs(std::log(ratio / seen->scale)) < kLargestCorrection);
+      });
+    const auto scale = ground_scale(std::move(all));
+    return scale ? scale : seen;
   };
   ScaleProfile profile;
   profile.factor.assign(count, 1.0);
@@ -111,7 +146,9 @@ ScaleProfile ground_scale_profile(const MappingInput& input,
     const auto whole = estimate(begin, end, segments[begin]);
     if (whole) {
       profile.found = true;
-      profile.sigma = std::max(profile.sigma, whole->sigma);
+      const double windows = std::max(1.0, static_cast<double>(end - begin) / window);
+      profile.sigma =
+          std::max(profile.sigma, std::hypot(kWindowSigma / std::sqrt(windows), whole->sigma));
     }
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t half = static_cast<std::size_t>(window) / 2;

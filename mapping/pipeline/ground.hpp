@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct GroundOptions {
   double ahead_m = 1.5;    ///< largest distance of a point before or behind the rear axle
   double beside_m = 1.6;   ///< largest distance to the side; farther out kerbs begin
   double height_m = 0.06;  ///< largest distance of a ground point from the ground level
+  /// Largest difference of keyframes between a view of a point and the pose. Before loops are
+  /// closed, poses of another pass have another height.
+  int keyframes_apart = std::numeric_limits<int>::max();
 };
 
 /// For each of `tracks` the nearest pose of the same stretch of its drive (no gap between) from

@@ -166,6 +166,28 @@ void require_loops(const std::vector<LoopClosure>& loops,
              " % (a wrong calibration of wheels or cameras?)");
 }
 
+void require_possible_motions(const MappingInput& input,
+                              const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                              const GateInputs& inputs) {
+  constexpr double kMostMs = 140.0;  // twice the fastest car of a recording
+  constexpr double kPosesErrM = 3.0;
+  const auto& keyframes = input.odometry.keyframes;
+  for (std::size_t k = 1; k < keyframes.size(); ++k) {
+    if (input.session[k] != input.session[k - 1] || keyframes[k].after_gap) continue;
+    const double dt = 1e-9 * static_cast<double>(keyframes[k].t_ns - keyframes[k - 1].t_ns);
+    const double way_m =
+        (T_map_vehicle[k].translation() - T_map_vehicle[k - 1].translation()).norm();
+    if (way_m <= kPosesErrM + kMostMs * dt) continue;
+    const double begin_s =
+        1e-9 * static_cast<double>(keyframes[k - 1].t_ns - keyframes.front().t_ns);
+    refuse(inputs.drives[static_cast<std::size_t>(input.session[k])], "poses",
+           rounded(way_m, 0) + " m in " + rounded(dt, 2) + " s, " + rounded(begin_s, 1) +
+               " s after the start",
+           "a way that a car can drive (the cameras lost their scale there: map it with wheels, or "
+           "with a camera that sees the ground)");
+  }
+}
+
 void require_evidence(const MappingInput& input,
                       const Adjusted& adjusted,
                       const std::vector<CameraFigures>& cameras,

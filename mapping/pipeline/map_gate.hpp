@@ -36,6 +36,11 @@ void require_loops(const std::vector<LoopClosure>& loops,
                    const GateInputs& inputs,
                    const MapGateOptions& options);
 
+/// Refuses poses between which no car can drive in the time. Sessions as in `inputs.drives`.
+void require_possible_motions(const MappingInput& input,
+                              const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                              const GateInputs& inputs);
+
 /// Refuses drives with too few landmarks, views a keyframe or cameras in use. `doubts`: what may be
 /// wrong with the cameras, for the line.
 void require_evidence(const MappingInput& input,

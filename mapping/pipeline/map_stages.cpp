@@ -49,6 +49,7 @@ void rechain(VoResult& odometry,
     T.translation() *= factor[k - 1];
     keyframe.T_odom_vehicle = odometry.keyframes[k - 1].T_odom_vehicle * T;
     keyframe.travelled_m = odometry.keyframes[k - 1].travelled_m + T.translation().norm();
+    if (keyframe.ground_log_scale) *keyframe.ground_log_scale -= std::log(factor[k - 1]);
     keyframe.information.topLeftCorner<3, 3>() /= factor[k - 1] * factor[k - 1];
     keyframe.information.topRightCorner<3, 3>() /= factor[k - 1];
     keyframe.information.bottomLeftCorner<3, 3>() /= factor[k - 1];

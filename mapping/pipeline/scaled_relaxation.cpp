@@ -65,6 +65,7 @@ void rescale_stretches(MappingInput& input,
     move_to_vehicles(input, step);
     keyframes[k].T_odom_vehicle = keyframes[k - 1].T_odom_vehicle * step.T_from_to;
     keyframes[k].information = step.information;
+    if (auto& seen = keyframes[k].ground_log_scale) *seen -= std::log(factor[k - 1]);
     keyframes[k].travelled_m = keyframes[k - 1].travelled_m + step.T_from_to.translation().norm();
   }
 }

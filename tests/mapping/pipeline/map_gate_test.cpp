@@ -136,6 +136,25 @@ TEST(MapGate, RefusesTooFewLandmarksViewsAndCameras) {
             std::string::npos);
 }
 
+TEST(MapGate, RefusesMotionsThatNoCarMakes) {
+  MappingInput input = keyframes_of({0, 0, 0});
+  std::vector<Eigen::Isometry3d> poses(3, Eigen::Isometry3d::Identity());
+  for (std::size_t k = 0; k < 3; ++k)
+    input.odometry.keyframes[k].t_ns = static_cast<std::int64_t>(k) * 500'000'000;
+  const GateInputs drive{{"monday"}, "place.gpkg"};
+  const auto line = [&] {
+    return refusal([&] { require_possible_motions(input, poses, drive); });
+  };
+  poses[2].translation().x() = 60.0;
+  EXPECT_EQ(line(), "");
+  poses[2].translation().x() = 400.0;
+  EXPECT_NE(line().find("monday: poses: got 400 m in 0.50 s, 0.5 s after the start"),
+            std::string::npos)
+      << line();
+  input.odometry.keyframes[2].after_gap = true;
+  EXPECT_EQ(line(), "");
+}
+
 TEST(MapGate, WarnsOfIdleCamerasAndOfOtherStamps) {
   Evidenced e = with_views({40, 40, 40, 40}, 100, 0.2);
   e.cameras[0].paired_share = 0.02;

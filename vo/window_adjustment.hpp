@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "sensors/rig.hpp"
+
+namespace roadbook {
+
+// Bundle adjustment of the newest keyframes of odometry without wheels. Poses that were found one
+// after the other, each with points of the poses before it, drift: an error of one motion changes
+// the points, and these the next motion. Poses and points of a window together drift far less
+// (Mur-Artal, Montiel, Tardos 2015, section VI-D: local bundle adjustment).
+
+/// A pixel in which a pose of the window saw a point.
+struct WindowView {
+  int pose = 0;
+  int point = 0;
+  int camera = 0;
+  Eigen::Vector2d pixel;
+};
+
+struct VoWindow {
+  std::vector<Eigen::Isometry3d> T_odom_vehicle;
+  int fixed = 1;                        ///< number of first poses that stay as they are
+  std::vector<Eigen::Vector3d> points;  ///< odometry frame
+  std::vector<WindowView> views;        ///< ascending points
+};
+
+struct WindowOptions {
+  double sigma_px = 0.6;
+  double width_px = 2.5;  ///< of the robust (Cauchy) cost
+  int iterations = 3;
+};
+
+/// Sum of the robust costs of all views. Views that do not project count as width_px.
+[[nodiscard]] double window_cost(const Rig& rig,
+                                 const VoWindow& window,
+                                 const WindowOptions& options);
+
+/// Minimises the cost of a car's motion and `window_cost` by Levenberg-Marquardt over free poses
+/// and points; points are eliminated (Schur complement). A car neither slides sideways nor hops:
+/// motions between successive free poses have a wide prior. Never raises the cost.
+void adjust_window(const Rig& rig, const WindowOptions& options, VoWindow& window);
+
+}  // namespace roadbook
