@@ -181,7 +181,7 @@ void require_possible_motions(const MappingInput& input,
     const double begin_s =
         1e-9 * static_cast<double>(keyframes[k - 1].t_ns - keyframes.front().t_ns);
     refuse(inputs.drives[static_cast<std::size_t>(input.session[k])], "poses",
-           rounded(way_m, 0) + " m in " + rounded(dt, 2) + " s, " + rounded(begin_s, 1) +
+           fixed(way_m, 0) + " m in " + fixed(dt, 2) + " s, " + fixed(begin_s, 1) +
                " s after the start",
            "a way that a car can drive (the cameras lost their scale there: map it with wheels, or "
            "with a camera that sees the ground)");

@@ -165,6 +165,12 @@ void shorten(const fs::path& copy, double share) {
   }
 }
 
+// Leaves one camera of the copy, without wheels and inertial sensors.
+void keep_alone(const fs::path& copy, const std::string& camera) {
+  for (const std::string sensor : {"cam0", "cam1", "cam2", "cam3", "wheels0", "imu0"})
+    if (sensor != camera) fs::remove_all(copy / sensor);
+}
+
 // A build that is killed leaves either no map or a complete map. The same build, run again, ends
 // with the same content.
 void survives_a_kill(const fs::path& folder, const fs::path& drive_folder) {
@@ -269,6 +275,17 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     const Map map = load_map(folder / "vision.gpkg");
     const double driven_m = test::driven_truth_m(map, drive);
     EXPECT_NEAR(map.keyframes.back().travelled_m, driven_m, 0.01 * driven_m);
+  }
+  for (const std::string camera : {"cam0", "cam1"}) {
+    SCOPED_TRACE(camera + " alone");
+    const auto copy = linked_copy(round, folder / (camera + "_alone"));
+    keep_alone(copy, camera);
+    const auto summary = build_map({copy}, folder / "alone.gpkg", without_covariances());
+    EXPECT_EQ(summary.scale_source, ScaleSource::kCameraHeight);
+    EXPECT_EQ(summary.components, 1U);
+    EXPECT_GT(summary.loops_accepted, 20U);
+    expect_accurate(folder / "alone.gpkg", drive, 1.0);
+    std::filesystem::remove(folder / "alone.gpkg");
   }
   {
     SCOPED_TRACE("a camera dies half way");

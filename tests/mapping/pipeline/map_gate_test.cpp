@@ -142,9 +142,7 @@ TEST(MapGate, RefusesMotionsThatNoCarMakes) {
   for (std::size_t k = 0; k < 3; ++k)
     input.odometry.keyframes[k].t_ns = static_cast<std::int64_t>(k) * 500'000'000;
   const GateInputs drive{{"monday"}, "place.gpkg"};
-  const auto line = [&] {
-    return refusal([&] { require_possible_motions(input, poses, drive); });
-  };
+  const auto line = [&] { return refusal([&] { require_possible_motions(input, poses, drive); }); };
   poses[2].translation().x() = 60.0;
   EXPECT_EQ(line(), "");
   poses[2].translation().x() = 400.0;
