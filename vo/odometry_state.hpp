@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/se3.hpp"
@@ -102,7 +104,9 @@ struct VisualOdometry::State {
   bool has_new_size(int track, const Eigen::Isometry3d& T_odom_new) const;
   void triangulate_tracks(const VoKeyframe& keyframe);
   void forget_lone_tracks();
-  void start_tracks(VoKeyframe& keyframe, std::size_t index);
+  // Known places of features that begin a new track, by camera and feature.
+  using KnownPlaces = std::map<std::pair<std::size_t, std::size_t>, Eigen::Vector3d>;
+  void start_tracks(VoKeyframe& keyframe, std::size_t index, const KnownPlaces& places);
 
   // Adjustment of the newest keyframes without wheels (odometry_window.cpp).
   VoWindow newest_window(std::vector<int>& tracks) const;

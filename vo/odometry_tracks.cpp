@@ -107,7 +107,9 @@ void VisualOdometry::State::forget_lone_tracks() {
     for (int& id : tracks) renumber(id);
 }
 
-void VisualOdometry::State::start_tracks(VoKeyframe& keyframe, std::size_t index) {
+void VisualOdometry::State::start_tracks(VoKeyframe& keyframe,
+                                         std::size_t index,
+                                         const KnownPlaces& places) {
   newest_tracks = result.tracks.size();
   for (std::size_t c = 0; c < keyframe.features.size(); ++c) {
     keyframe.tracks[c].resize(keyframe.features[c].size(), -1);
@@ -116,6 +118,8 @@ void VisualOdometry::State::start_tracks(VoKeyframe& keyframe, std::size_t index
       const int id = static_cast<int>(result.tracks.size());
       result.tracks.push_back(
           {static_cast<int>(c), {{static_cast<int>(index), static_cast<int>(f)}}, std::nullopt});
+      if (const auto place = places.find({c, f}); place != places.end())
+        result.tracks.back().p_odom = place->second;
       keyframe.tracks[c][f] = id;
       active[c].push_back(id);
     }
@@ -124,6 +128,7 @@ void VisualOdometry::State::start_tracks(VoKeyframe& keyframe, std::size_t index
 
 void VisualOdometry::State::accept(VoFrame&& frame, const Matches& matches, VoKeyframe&& keyframe) {
   const std::size_t index = result.keyframes.size();
+  std::map<std::pair<std::size_t, std::size_t>, int> resized;
   keyframe.tracks.resize(frame.features.size());
   for (std::size_t c = 0; c < frame.features.size(); ++c) {
     keyframe.tracks[c].assign(frame.features[c].size(), -1);
@@ -133,9 +138,12 @@ void VisualOdometry::State::accept(VoFrame&& frame, const Matches& matches, VoKe
       if (feature < 0) continue;
       const auto f = static_cast<std::size_t>(feature);
       if (!consistent(id, static_cast<int>(c), frame.features[c].pixels[f],
-                      keyframe.T_odom_vehicle) ||
-          (!keyframe.wheels && has_new_size(id, keyframe.T_odom_vehicle)))
+                      keyframe.T_odom_vehicle))
         continue;
+      if (!keyframe.wheels && has_new_size(id, keyframe.T_odom_vehicle)) {
+        resized[{c, f}] = id;
+        continue;
+      }
       keyframe.tracks[c][f] = id;
       result.tracks[static_cast<std::size_t>(id)].observations.push_back(
           {static_cast<int>(index), feature});
@@ -148,6 +156,12 @@ void VisualOdometry::State::accept(VoFrame&& frame, const Matches& matches, VoKe
   VoKeyframe& added = result.keyframes.back();
   triangulate_tracks(added);
   adjust_newest();
+  // Corners whose images have another size begin anew, where the window has put them.
+  KnownPlaces places;
+  for (const auto& [feature, id] : resized) {
+    places[feature] = *result.tracks[static_cast<std::size_t>(id)].p_odom;
+    std::erase(active[feature.first], id);
+  }
   for (auto& tracks : active)
     std::erase_if(tracks, [&](int id) {
       const auto& seen = result.tracks[static_cast<std::size_t>(id)].observations;
@@ -156,7 +170,7 @@ void VisualOdometry::State::accept(VoFrame&& frame, const Matches& matches, VoKe
       return seen.back().keyframe < static_cast<int>(index) - allowed;
     });
   forget_lone_tracks();
-  start_tracks(added, index);
+  start_tracks(added, index, places);
 }
 
 }  // namespace roadbook

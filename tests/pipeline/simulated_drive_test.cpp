@@ -276,7 +276,7 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     const double driven_m = test::driven_truth_m(map, drive);
     EXPECT_NEAR(map.keyframes.back().travelled_m, driven_m, 0.01 * driven_m);
   }
-  for (const std::string camera : {"cam0", "cam1"}) {
+  for (const std::string camera : {"cam1", "cam2"}) {
     SCOPED_TRACE(camera + " alone");
     const auto copy = linked_copy(round, folder / (camera + "_alone"));
     keep_alone(copy, camera);
@@ -284,7 +284,7 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     EXPECT_EQ(summary.scale_source, ScaleSource::kCameraHeight);
     EXPECT_EQ(summary.components, 1U);
     EXPECT_GT(summary.loops_accepted, 20U);
-    expect_accurate(folder / "alone.gpkg", drive, 1.0);
+    expect_accurate(folder / "alone.gpkg", drive, 2.0);
     std::filesystem::remove(folder / "alone.gpkg");
   }
   {
