@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "vo/driving_prior.hpp"
 #include "vo/odometry_state.hpp"
 #include "vo/planar_motion.hpp"
+#include "vo/window/driving_prior.hpp"
 
 namespace roadbook {
 

@@ -14,7 +14,7 @@
 #include "vo/rig_pose.hpp"
 #include "vo/two_view.hpp"
 #include "vo/visual_odometry.hpp"
-#include "vo/window_adjustment.hpp"
+#include "vo/window/window_adjustment.hpp"
 
 namespace roadbook {
 

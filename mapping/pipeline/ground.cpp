@@ -15,7 +15,7 @@ constexpr double kLargestDrift = 0.7;  // of odometry's scale over a stretch, as
 
 constexpr double kLeastHeightM = 0.05;  // of a camera whose height is known
 constexpr int kSamePassKeyframes = 60;
-constexpr double kLargestCorrection = 0.2;  // of what the odometry saw ahead, as a logarithm
+constexpr double kLargestCorrection = 0.2;  // of the scale by the odometry, as a logarithm
 constexpr double kWindowSigma = 0.03;       // of a window's scale: slopes, kerbs, pitch of the car
 
 double camera_height(const Rig& rig) {
@@ -24,9 +24,9 @@ double camera_height(const Rig& rig) {
   return sum / static_cast<double>(rig.cameras.size());
 }
 
-// Scale of a stretch by what the odometry saw of the ground ahead and beside. That shows more than
-// the points that the car drives over. Empty where it saw too little in half of the keyframes. All
-// see much the same ground: the standard deviation is that of a window.
+// Scale of a stretch by the ground around the car that the odometry saw: far more points than those
+// that the car drives over. Empty where it saw too few in half of the keyframes. Neighbours see
+// much the same ground: the standard deviation is that of a window.
 std::optional<GroundScale> scale_seen_ahead(const MappingInput& input,
                                             const std::vector<int>& segments,
                                             std::size_t begin,

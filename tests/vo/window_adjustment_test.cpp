@@ -1,4 +1,4 @@
-#include "vo/window_adjustment.hpp"
+#include "vo/window/window_adjustment.hpp"
 
 #include <ceres/ceres.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include "base/random.hpp"
 #include "tests/support/fisheye_rig.hpp"
 #include "tests/vo/synthetic_views.hpp"
-#include "vo/driving_prior.hpp"
+#include "vo/window/driving_prior.hpp"
 
 namespace roadbook {
 namespace {

@@ -1,4 +1,4 @@
-#include "vo/window_adjustment.hpp"
+#include "vo/window/window_adjustment.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "base/se3.hpp"
-#include "vo/driving_prior.hpp"
+#include "vo/window/driving_prior.hpp"
 
 namespace roadbook {
 namespace {

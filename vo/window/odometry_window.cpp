@@ -4,7 +4,7 @@
 
 #include "vo/ground_scale.hpp"
 #include "vo/odometry_state.hpp"
-#include "vo/window_adjustment.hpp"
+#include "vo/window/window_adjustment.hpp"
 
 namespace roadbook {
 namespace {
