@@ -29,8 +29,9 @@ struct VoKeyframe {
   /// Turn [rad] since the previous keyframe by the cameras alone, near the pose found with the
   /// wheels, less that of the wheels. 0 without wheels, and where the cameras know none.
   double turn_beyond_wheels_rad = 0.0;
-  /// Logarithm of the metres a unit of the odometry has here, by the cameras' height over the
-  /// ground. Empty with wheels, and where too little of the ground was seen.
+  /// Natural logarithm of the scale (metres per unit of the odometry) here, by the cameras' height
+  /// over the ground; what scales the odometry changes it. Empty with wheels, and where too little
+  /// of the ground was seen.
   std::optional<double> ground_log_scale;
   double travelled_m = 0.0;  ///< since the drive's start, in the odometry's scale
   bool reversing = false;

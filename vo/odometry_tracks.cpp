@@ -7,8 +7,8 @@
 namespace roadbook {
 namespace {
 constexpr std::size_t kMaxRays = 10;  // of a track, for triangulation
-// Change of a corner's distance over a track without wheels. What is detected as the corner moves
-// with the size of its image: along a street, longer tracks shrink or stretch the way.
+// Change of a corner's distance over a track without wheels. FAST finds another point of the object
+// when its image grows: along a street, long tracks bias the distances.
 constexpr double kMostRangeRatio = 1.6;
 }  // namespace
 

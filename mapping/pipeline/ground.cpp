@@ -14,6 +14,7 @@ constexpr double kCell = 4.0;
 constexpr double kLargestDrift = 0.7;  // of odometry's scale over a stretch, as a logarithm
 
 constexpr double kLeastHeightM = 0.05;  // of a camera whose height is known
+constexpr double kHeightSigma = 0.005;  // of the cameras' stated height: common to all windows
 constexpr int kSamePassKeyframes = 60;
 constexpr double kLargestCorrection = 0.2;  // of the scale by the odometry, as a logarithm
 constexpr double kWindowSigma = 0.03;       // of a window's scale: slopes, kerbs, pitch of the car
@@ -140,6 +141,7 @@ ScaleProfile ground_scale_profile(const MappingInput& input,
   };
   ScaleProfile profile;
   profile.factor.assign(count, 1.0);
+  profile.stretch_sigma.assign(count, 0.0);
   for (std::size_t begin = 0; begin < count;) {
     std::size_t end = begin;
     while (end < count && segments[end] == segments[begin]) ++end;
@@ -147,8 +149,10 @@ ScaleProfile ground_scale_profile(const MappingInput& input,
     if (whole) {
       profile.found = true;
       const double windows = std::max(1.0, static_cast<double>(end - begin) / window);
-      profile.sigma =
-          std::max(profile.sigma, std::hypot(kWindowSigma / std::sqrt(windows), whole->sigma));
+      const double sigma =
+          std::hypot(kHeightSigma, std::hypot(kWindowSigma / std::sqrt(windows), whole->sigma));
+      std::fill(profile.stretch_sigma.begin() + static_cast<std::ptrdiff_t>(begin),
+                profile.stretch_sigma.begin() + static_cast<std::ptrdiff_t>(end), sigma);
     }
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t half = static_cast<std::size_t>(window) / 2;
@@ -166,6 +170,14 @@ ScaleProfile ground_scale_profile(const MappingInput& input,
     begin = end;
   }
   return profile;
+}
+
+std::optional<double> largest_sigma(const ScaleProfile& profile,
+                                    std::size_t begin,
+                                    std::size_t end) {
+  double largest = 0.0;
+  for (std::size_t k = begin; k < end; ++k) largest = std::max(largest, profile.stretch_sigma[k]);
+  return largest > 0.0 ? std::optional(largest) : std::nullopt;
 }
 
 }  // namespace roadbook

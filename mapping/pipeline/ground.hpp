@@ -57,10 +57,18 @@ struct LocalScale {
 struct ScaleProfile {
   std::vector<double> factor;  ///< on the motion from each keyframe to the next
   bool found = false;          ///< false: too few ground points
-  double sigma = 0.0;          ///< relative standard deviation of the overall scale
+  /// Of each keyframe: relative standard deviation of the overall scale of its stretch, 0 if it is
+  /// not known.
+  std::vector<double> stretch_sigma;
   /// Estimates of all windows with enough ground, plausible or not; ascending keyframes.
   std::vector<LocalScale> local;
 };
+
+/// Largest standard deviation of the stretches among the keyframes [begin, end); empty if none is
+/// known.
+[[nodiscard]] std::optional<double> largest_sigma(const ScaleProfile& profile,
+                                                  std::size_t begin,
+                                                  std::size_t end);
 
 /// Mean height [m] of the cameras above the vehicle frame's origin, which lies on the ground; empty
 /// if it is not known: a calibration without a measured height states 0.

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/format.hpp"
+#include "mapping/pipeline/ground.hpp"
 
 namespace roadbook {
 namespace {
@@ -169,22 +170,28 @@ void require_loops(const std::vector<LoopClosure>& loops,
 void require_possible_motions(const MappingInput& input,
                               const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                               const GateInputs& inputs) {
-  constexpr double kMostMs = 140.0;  // twice the fastest car of a recording
-  constexpr double kPosesErrM = 3.0;
+  constexpr double kFastestMps = 140.0;  // twice the fastest car of a recording
+  constexpr double kPoseErrorM = 3.0;
   const auto& keyframes = input.odometry.keyframes;
+  std::int64_t start_ns = keyframes.empty() ? 0 : keyframes.front().t_ns;
   for (std::size_t k = 1; k < keyframes.size(); ++k) {
+    if (input.session[k] != input.session[k - 1]) start_ns = keyframes[k].t_ns;
     if (input.session[k] != input.session[k - 1] || keyframes[k].after_gap) continue;
+    const auto session = static_cast<std::size_t>(input.session[k]);
+    // Of a free scale, a unit is no metre.
+    if (!input.has_wheels[session] && !known_camera_height(input.half_rigs[session])) continue;
     const double dt = 1e-9 * static_cast<double>(keyframes[k].t_ns - keyframes[k - 1].t_ns);
     const double way_m =
         (T_map_vehicle[k].translation() - T_map_vehicle[k - 1].translation()).norm();
-    if (way_m <= kPosesErrM + kMostMs * dt) continue;
-    const double begin_s =
-        1e-9 * static_cast<double>(keyframes[k - 1].t_ns - keyframes.front().t_ns);
-    refuse(inputs.drives[static_cast<std::size_t>(input.session[k])], "poses",
+    if (way_m <= kPoseErrorM + kFastestMps * dt) continue;
+    const double begin_s = 1e-9 * static_cast<double>(keyframes[k - 1].t_ns - start_ns);
+    refuse(inputs.drives[session], "poses",
            fixed(way_m, 0) + " m in " + fixed(dt, 2) + " s, " + fixed(begin_s, 1) +
                " s after the start",
-           "a way that a car can drive (the cameras lost their scale there: map it with wheels, or "
-           "with a camera that sees the ground)");
+           std::string("a way that a car can drive") +
+               (keyframes[k].wheels ? ""
+                                    : " (the cameras lost their scale there: map it with wheels, "
+                                      "or with a camera that sees the ground)"));
   }
 }
 

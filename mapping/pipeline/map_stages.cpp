@@ -147,11 +147,11 @@ std::optional<double> scale_by_ground(MappingInput& input, int session, const Ma
     triangulate_tracks(input, poses, options.triangulation, tracks);
     auto profile = ground_scale_profile(input, poses, tracks);
     if (!profile.found) break;
-    sigma = profile.sigma;
     std::size_t begin = 0;
     while (begin < poses.size() && input.session[begin] != session) ++begin;
     std::size_t end = begin;
     while (end < poses.size() && input.session[end] == session) ++end;
+    sigma = largest_sigma(profile, begin, end);
     // Where the wheels know the motion, they know its length better.
     for (std::size_t k = begin + 1; k < end; ++k)
       if (input.odometry.keyframes[k].wheels) profile.factor[k - 1] = 1.0;

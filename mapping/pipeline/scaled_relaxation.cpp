@@ -187,7 +187,7 @@ SessionScale scale_session(MappingInput& input, int session, const MapOptions& o
     triangulate_tracks(input, poses, options.triangulation, tracks);
     const auto profile = ground_scale_profile(input, poses, tracks);
     if (!profile.found) break;
-    scale.sigma = profile.sigma;
+    scale.sigma = largest_sigma(profile, begin, end);
     const auto scales = continuous_scales(input, profile.local);
     if (round < 2) {
       std::vector<std::optional<double>> elsewhere(profile.factor.begin(), profile.factor.end());

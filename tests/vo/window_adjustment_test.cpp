@@ -173,6 +173,22 @@ TEST(WindowAdjustment, ThreeIterationsTakeMostOfTheErrorAndKeepFixedPoses) {
   }
 }
 
+// Views of one pose are gone, or all but a few: nothing may fling it away.
+TEST(WindowAdjustment, LeavesAPoseThatHardlyAnyViewHoldsNearItsStart) {
+  for (const int left : {0, 1, 2, 5}) {
+    WindowScene scene = make_window_scene(1, 7);
+    int kept = 0;
+    std::erase_if(scene.start.views,
+                  [&](const WindowView& v) { return v.pose == 5 && ++kept > left; });
+    VoWindow window = scene.start;
+    adjust_window(scene.rig, {}, window);
+    const auto k = std::size_t{5};
+    EXPECT_LT(se3_log(window.T_odom_vehicle[k].inverse() * scene.truth.T_odom_vehicle[k]).norm(),
+              0.2)
+        << left;
+  }
+}
+
 TEST(WindowAdjustment, LeavesWhatHasNothingToAdjust) {
   const WindowScene scene = make_window_scene(1, 5);
   VoWindow all_fixed = scene.start;

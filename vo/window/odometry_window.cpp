@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "vo/ground_scale.hpp"
@@ -9,8 +10,8 @@
 namespace roadbook {
 namespace {
 
-constexpr int kFreePoses =
-    7;  // newest keyframes of a window; the views of those before hold points
+constexpr int kFreePoses = 7;           // newest keyframes of a window; those before them stay
+constexpr int kStartKeyframes = 30;     // of a stretch, while the scale is hardly known
 constexpr double kLeastHeightM = 0.05;  // of cameras whose height is known
 
 Eigen::Vector3d centre_of(const Rig& rig) {
@@ -21,14 +22,14 @@ Eigen::Vector3d centre_of(const Rig& rig) {
 
 // Scale by the ground around the newest pose. Where a slope begins, the ground ahead is tilted and
 // would look like another height: of several tilts, the one that most points agree on counts.
-std::optional<GroundScale> scale_around(const VoWindow& window, double camera_height_m) {
+std::optional<GroundScale> scale_by_ground_around(const VoWindow& window, double camera_height_m) {
   constexpr double kAheadHeights = 10.0;  // farther away, a small tilt is a large error
   constexpr double kBesideHeights = 4.0;
   constexpr int kFewest = 20;
   constexpr double kLeastShare = 0.15;
-  constexpr int kTilts = 4;             // to either side
-  constexpr double kTiltStep = 0.025;   // [rad]
-  constexpr double kMoreSupport = 1.1;  // that a tilted ground needs
+  constexpr int kTilts = 4;              // to either side
+  constexpr double kTiltStep = 0.025;    // [rad]
+  constexpr double kLevelSupport = 1.1;  // factor on the support of a ground without tilt
   const Eigen::Isometry3d T_vehicle_odom = window.T_odom_vehicle.back().inverse();
   std::vector<Eigen::Vector3d> near;
   for (const Eigen::Vector3d& point : window.points) {
@@ -45,7 +46,7 @@ std::optional<GroundScale> scale_around(const VoWindow& window, double camera_he
       ratios.push_back(camera_height_m / (camera_height_m - p.z() + kTiltStep * tilt * p.x()));
     const auto found = ground_scale(std::move(ratios), kFewest);
     if (!found) continue;
-    const double support = (tilt == 0 ? kMoreSupport : 1.0) * found->support;
+    const double support = (tilt == 0 ? kLevelSupport : 1.0) * found->support;
     if (support <= most) continue;
     most = support;
     best = found;
@@ -56,56 +57,65 @@ std::optional<GroundScale> scale_around(const VoWindow& window, double camera_he
 // Multiplies the lengths of the window, seen from its first pose.
 void multiply_lengths(double factor, const Eigen::Vector3d& camera_centre, VoWindow& window) {
   const Eigen::Vector3d origin = window.T_odom_vehicle.front() * camera_centre;
-  const auto moved = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+  const auto scaled = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
     return origin + factor * (p - origin);
   };
   for (Eigen::Isometry3d& T : window.T_odom_vehicle)
-    T.translation() = moved(T * camera_centre) - T.linear() * camera_centre;
-  for (Eigen::Vector3d& point : window.points) point = moved(point);
+    T.translation() = scaled(T * camera_centre) - T.linear() * camera_centre;
+  for (Eigen::Vector3d& point : window.points) point = scaled(point);
 }
 
-// The part of the ground's scale that a keyframe follows: at the start at once, later slowly, as
-// ramps and kerbs pass by.
-double followed(double log_scale, int keyframes) {
-  constexpr int kStart = 30;
+// The part of the ground's scale that the window follows after a keyframe: at the start of a
+// stretch at once, later slowly, as ramps and kerbs pass by.
+double log_factor_to_follow(double log_scale, int keyframes) {
   constexpr double kStartShare = 0.3;
   constexpr double kShare = 0.05;
   constexpr double kMost = 0.1;
-  return std::clamp((keyframes < kStart ? kStartShare : kShare) * log_scale, -kMost, kMost);
+  const double share = keyframes < kStartKeyframes ? kStartShare : kShare;
+  return std::clamp(share * log_scale, -kMost, kMost);
 }
 
 }  // namespace
 
-// The newest poses since the last gap, and the corners that they see.
+// The newest poses since the last gap, and the corners that they see. Poses before the last one
+// that sees too few stay fixed.
 VoWindow VisualOdometry::State::newest_window(std::vector<int>& tracks) const {
   const int count = static_cast<int>(result.keyframes.size());
   int first = count - 1;
   while (first > 0 && count - first < kWindowPoses && !keyframe_at(first).after_gap) --first;
   VoWindow window;
   window.fixed = std::max(1, count - first - kFreePoses);
+  std::vector<int> seen;
   for (int k = first; k < count; ++k) {
     window.T_odom_vehicle.push_back(keyframe_at(k).T_odom_vehicle);
     if (keyframe_at(k).wheels) window.fixed = std::max(window.fixed, k - first + 1);
+    for (const auto& of_camera : keyframe_at(k).tracks)
+      std::copy_if(of_camera.begin(), of_camera.end(), std::back_inserter(seen),
+                   [](int id) { return id >= 0; });
   }
-  for (const auto& of_camera : active)
-    for (const int id : of_camera) {
-      const Track& track = result.tracks[static_cast<std::size_t>(id)];
-      if (!track.p_odom) continue;
-      const std::size_t before = window.views.size();
-      for (const TrackObservation& o : track.observations)
-        if (o.keyframe >= first)
-          window.views.push_back({o.keyframe - first, static_cast<int>(tracks.size()), track.camera,
-                                  keyframe_at(o.keyframe)
-                                      .features[static_cast<std::size_t>(track.camera)]
-                                      .pixels[static_cast<std::size_t>(o.feature)]
-                                      .cast<double>()});
-      if (window.views.size() - before < 2) {
-        window.views.resize(before);
-        continue;
-      }
-      tracks.push_back(id);
-      window.points.push_back(*track.p_odom);
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  std::vector<int> views_of_pose(window.T_odom_vehicle.size(), 0);
+  for (const int id : seen) {
+    const Track& track = result.tracks[static_cast<std::size_t>(id)];
+    const auto& all = track.observations;
+    if (!track.p_odom || all.size() < 2 || all[all.size() - 2].keyframe < first) continue;
+    const auto begin = std::find_if(all.rbegin(), all.rend(), [&](const TrackObservation& o) {
+                         return o.keyframe < first;
+                       }).base();
+    for (auto o = begin; o != all.end(); ++o) {
+      ++views_of_pose[static_cast<std::size_t>(o->keyframe - first)];
+      window.views.push_back({o->keyframe - first, static_cast<int>(tracks.size()), track.camera,
+                              keyframe_at(o->keyframe)
+                                  .features[static_cast<std::size_t>(track.camera)]
+                                  .pixels[static_cast<std::size_t>(o->feature)]
+                                  .cast<double>()});
     }
+    tracks.push_back(id);
+    window.points.push_back(*track.p_odom);
+  }
+  for (int k = window.fixed; k < count - first; ++k)
+    if (views_of_pose[static_cast<std::size_t>(k)] < options.min_inliers) window.fixed = k + 1;
   return window;
 }
 
@@ -115,19 +125,27 @@ void VisualOdometry::State::follow_ground(VoWindow& window) {
   const auto first = result.keyframes.size() - size;
   const Eigen::Vector3d centre = centre_of(rig);
   if (centre.z() < kLeastHeightM) return;
-  const auto scale = scale_around(window, centre.z());
+  const auto scale = scale_by_ground_around(window, centre.z());
   if (!scale) return;
   last().ground_log_scale = std::log(scale->scale);
   if (std::any_of(result.keyframes.begin() + static_cast<std::ptrdiff_t>(first),
                   result.keyframes.end(), [](const VoKeyframe& k) { return k.wheels.has_value(); }))
     return;
   int stretch = 1;
-  for (std::size_t k = result.keyframes.size() - 1; k > 0 && !result.keyframes[k].after_gap; --k)
+  for (std::size_t k = result.keyframes.size() - 1;
+       k > 0 && stretch < kStartKeyframes && !result.keyframes[k].after_gap; --k)
     ++stretch;
-  const double log_factor = followed(*last().ground_log_scale, stretch);
-  multiply_lengths(std::exp(log_factor), centre, window);
-  for (std::size_t k = first; k < result.keyframes.size(); ++k)
-    if (auto& log_scale = result.keyframes[k].ground_log_scale) *log_scale -= log_factor;
+  const double log_factor = log_factor_to_follow(*last().ground_log_scale, stretch);
+  const double factor = std::exp(log_factor);
+  multiply_lengths(factor, centre, window);
+  for (std::size_t k = first; k < result.keyframes.size(); ++k) {
+    VoKeyframe& keyframe = result.keyframes[k];
+    if (keyframe.ground_log_scale) *keyframe.ground_log_scale -= log_factor;
+    if (k == first) continue;
+    keyframe.information.topLeftCorner<3, 3>() /= factor * factor;
+    keyframe.information.topRightCorner<3, 3>() /= factor;
+    keyframe.information.bottomLeftCorner<3, 3>() /= factor;
+  }
 }
 
 // Cameras alone: adjusts the newest poses together with the corners that they see.
@@ -146,11 +164,11 @@ void VisualOdometry::State::adjust_newest() {
   for (std::size_t k = 0; k < size; ++k) {
     VoKeyframe& keyframe = result.keyframes[first + k];
     keyframe.T_odom_vehicle = window.T_odom_vehicle[k];
-    if (k > 0)
-      keyframe.travelled_m =
-          result.keyframes[first + k - 1].travelled_m +
-          (window.T_odom_vehicle[k].translation() - window.T_odom_vehicle[k - 1].translation())
-              .norm();
+    if (k == 0) continue;
+    const Eigen::Vector3d way =
+        (window.T_odom_vehicle[k - 1].inverse() * window.T_odom_vehicle[k]).translation();
+    keyframe.travelled_m = result.keyframes[first + k - 1].travelled_m + way.norm();
+    if (!keyframe.wheels) keyframe.reversing = way.x() < 0.0;
   }
   for (std::size_t i = 0; i < tracks.size(); ++i)
     result.tracks[static_cast<std::size_t>(tracks[i])].p_odom = window.points[i];

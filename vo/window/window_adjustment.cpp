@@ -11,6 +11,9 @@
 namespace roadbook {
 namespace {
 
+constexpr double kLeastInformation = 100.0;  // of a step [1/m^2, 1/rad^2]: what nothing holds stays
+constexpr double kNotProjectedPx2 = 1e8;   // more than any view that projects
+
 using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
 double cauchy_cost(double squared, double width) {
@@ -46,32 +49,33 @@ class WindowSolver {
 
   void run() {
     if (free_ <= 0 || window_.points.empty()) return;
-    double cost = total_cost(window_);
+    double cost = total_cost();
     double damping = 1e-4;
     for (int iteration = 0; iteration < options_.iterations; ++iteration) {
       linearise();
-      VoWindow trial = window_;
-      if (!step(damping, trial)) return;
-      const double trial_cost = total_cost(trial);
-      if (trial_cost < cost) {
-        window_.T_odom_vehicle = std::move(trial.T_odom_vehicle);
-        window_.points = std::move(trial.points);
-        const bool is_done = cost - trial_cost < 1e-4 * cost;
-        cost = trial_cost;
+      const auto poses = window_.T_odom_vehicle;
+      const auto points = window_.points;
+      const bool has_step = step(damping);
+      const double new_cost = has_step ? total_cost() : cost;
+      if (has_step && new_cost < cost) {
+        const bool is_done = cost - new_cost < 1e-4 * cost;
+        cost = new_cost;
         damping *= 0.1;
         if (is_done) return;
       } else {
+        window_.T_odom_vehicle = poses;
+        window_.points = points;
         damping *= 100.0;
       }
     }
   }
 
  private:
-  [[nodiscard]] double total_cost(const VoWindow& window) const {
-    double cost = window_cost(rig_, window, options_);
-    for (int pose = std::max(1, window.fixed);
-         pose < static_cast<int>(window.T_odom_vehicle.size()); ++pose) {
-      const Vector6d xi = motion_of(window, pose);
+  [[nodiscard]] double total_cost() const {
+    double cost = window_cost(rig_, window_, options_);
+    for (int pose = std::max(1, window_.fixed);
+         pose < static_cast<int>(window_.T_odom_vehicle.size()); ++pose) {
+      const Vector6d xi = motion_of(window_, pose);
       cost += 0.5 * xi.dot(driving_information(xi.head<3>().norm()) * xi);
     }
     return cost;
@@ -119,7 +123,6 @@ class WindowSolver {
   // Motions within a window are small: the Jacobian of the logarithm is nearly the identity.
   void add_motion(int number) {
     const int pose = number + window_.fixed;
-    if (pose == 0) return;
     const Vector6d xi = motion_of(window_, pose);
     const Matrix6d information = driving_information(xi.head<3>().norm());
     H_.block<6, 6>(6 * number, 6 * number) += information;
@@ -134,10 +137,11 @@ class WindowSolver {
     g_.segment<6>(before) -= product * xi;
   }
 
-  bool step(double damping, VoWindow& trial) {
+  bool step(double damping) {
     Eigen::MatrixXd S = H_;
     Eigen::VectorXd b = g_;
     S.diagonal() *= 1.0 + damping;
+    S.diagonal().array() += kLeastInformation;
     std::vector<Eigen::Matrix3d> inverses(systems_.size());
     for (std::size_t i = 0; i < systems_.size(); ++i) {
       PointSystem& system = systems_[i];
@@ -159,7 +163,7 @@ class WindowSolver {
     const Eigen::VectorXd dx = llt.solve(b);
     if (!dx.allFinite()) return false;
     for (int number = 0; number < free_; ++number) {
-      Eigen::Isometry3d& T = trial.T_odom_vehicle[at(number + window_.fixed)];
+      Eigen::Isometry3d& T = window_.T_odom_vehicle[at(number + window_.fixed)];
       T = T * se3_exp(dx.segment<6>(6 * number));
       T.linear() = nearest_rotation(T.linear());
     }
@@ -167,7 +171,7 @@ class WindowSolver {
       Eigen::Vector3d rest = systems_[i].b;
       for (const auto& [number, W] : systems_[i].W)
         rest.noalias() -= W.transpose() * dx.segment<6>(6 * number);
-      trial.points[i] += inverses[i] * rest;
+      window_.points[i] += inverses[i] * rest;
     }
     return true;
   }
@@ -193,8 +197,7 @@ double window_cost(const Rig& rig, const VoWindow& window, const WindowOptions& 
     const Eigen::Vector3d p_vehicle = T_vehicle_odom[at(view.pose)] * window.points[at(view.point)];
     const auto pixel = mounted.camera.project(mounted.T_vehicle_camera.linear().transpose() *
                                               (p_vehicle - mounted.T_vehicle_camera.translation()));
-    const double squared =
-        pixel ? (view.pixel - *pixel).squaredNorm() : options.width_px * options.width_px;
+    const double squared = pixel ? (view.pixel - *pixel).squaredNorm() : kNotProjectedPx2;
     cost += per_px * cauchy_cost(squared, options.width_px);
   }
   return cost;

@@ -22,7 +22,7 @@ struct WindowView {
 
 struct VoWindow {
   std::vector<Eigen::Isometry3d> T_odom_vehicle;
-  int fixed = 1;                        ///< number of first poses that stay as they are
+  int fixed = 1;                        ///< number of first poses that stay; at least 1
   std::vector<Eigen::Vector3d> points;  ///< odometry frame
   std::vector<WindowView> views;        ///< ascending points
 };
@@ -33,14 +33,16 @@ struct WindowOptions {
   int iterations = 3;
 };
 
-/// Sum of the robust costs of all views. Views that do not project count as width_px.
+/// Sum of the robust costs of all views. A view that does not project counts more
+/// than any other.
 [[nodiscard]] double window_cost(const Rig& rig,
                                  const VoWindow& window,
                                  const WindowOptions& options);
 
 /// Minimises the cost of a car's motion and `window_cost` by Levenberg-Marquardt over free poses
 /// and points; points are eliminated (Schur complement). A car neither slides sideways nor hops:
-/// motions between successive free poses have a wide prior. Never raises the cost.
+/// motions between successive free poses have the prior `driving_information`. Never raises the
+/// cost.
 void adjust_window(const Rig& rig, const WindowOptions& options, VoWindow& window);
 
 }  // namespace roadbook

@@ -137,19 +137,28 @@ TEST(MapGate, RefusesTooFewLandmarksViewsAndCameras) {
 }
 
 TEST(MapGate, RefusesMotionsThatNoCarMakes) {
-  MappingInput input = keyframes_of({0, 0, 0});
-  std::vector<Eigen::Isometry3d> poses(3, Eigen::Isometry3d::Identity());
-  for (std::size_t k = 0; k < 3; ++k)
-    input.odometry.keyframes[k].t_ns = static_cast<std::int64_t>(k) * 500'000'000;
-  const GateInputs drive{{"monday"}, "place.gpkg"};
-  const auto line = [&] { return refusal([&] { require_possible_motions(input, poses, drive); }); };
-  poses[2].translation().x() = 60.0;
+  MappingInput input = keyframes_of({0, 0, 1, 1, 1});
+  input.has_wheels = {false, true};
+  std::vector<Eigen::Isometry3d> poses(5, Eigen::Isometry3d::Identity());
+  for (std::size_t k = 0; k < 5; ++k)
+    input.odometry.keyframes[k].t_ns =
+        static_cast<std::int64_t>(k) * 500'000'000 + (k > 1 ? 86'400'000'000'000 : 0);
+  const auto line = [&] {
+    return refusal([&] { require_possible_motions(input, poses, kTwoDrives); });
+  };
+  poses[4].translation().x() = 60.0;
   EXPECT_EQ(line(), "");
-  poses[2].translation().x() = 400.0;
-  EXPECT_NE(line().find("monday: poses: got 400 m in 0.50 s, 0.5 s after the start"),
+  poses[4].translation().x() = 400.0;
+  EXPECT_NE(line().find("tuesday: poses: got 400 m in 0.50 s, 0.5 s after the start"),
             std::string::npos)
       << line();
-  input.odometry.keyframes[2].after_gap = true;
+  EXPECT_NE(line().find("cameras lost their scale"), std::string::npos);
+  input.odometry.keyframes[4].wheels.emplace();
+  EXPECT_EQ(line().find("cameras lost their scale"), std::string::npos);
+  input.has_wheels[1] = false;  // a rig of unknown height: its unit is no metre
+  EXPECT_EQ(line(), "");
+  input.has_wheels[1] = true;
+  input.odometry.keyframes[4].after_gap = true;
   EXPECT_EQ(line(), "");
 }
 
