@@ -173,6 +173,30 @@ std::filesystem::path joined_malaga(const std::filesystem::path& a,
   return joined;
 }
 
+// Pairs of frames were found by eye, to about half a second of driving.
+constexpr double kPairedTolerance = 5.0;  // frames of the drive, 0.1 s each
+
+// Way [m] that the car drove in a frame of the drive near a keyframe.
+double metres_a_frame(const Map& map, int keyframe) {
+  const auto k = static_cast<std::size_t>(std::max(keyframe, 1));
+  const double way = (map.T_map_vehicle(static_cast<int>(k)).translation() -
+                      map.T_map_vehicle(static_cast<int>(k) - 1).translation())
+                         .norm();
+  return way / (map.keyframes[k].drive_frame - map.keyframes[k - 1].drive_frame);
+}
+
+// How far ahead [m] of a keyframe the car was at a frame of the same pass.
+double ahead_m(const Map& map, int keyframe, double frame) {
+  std::size_t k = 0;
+  while (k + 1 < map.keyframes.size() && map.keyframes[k + 1].drive_frame < frame) ++k;
+  const auto& before = map.keyframes[k];
+  const auto& after = map.keyframes[k + 1];
+  const double share = (frame - before.drive_frame) / (after.drive_frame - before.drive_frame);
+  const Eigen::Vector3d p = (1.0 - share) * map.T_map_vehicle(static_cast<int>(k)).translation() +
+                            share * map.T_map_vehicle(static_cast<int>(k) + 1).translation();
+  return (map.T_map_vehicle(keyframe).inverse() * p).x();
+}
+
 TEST(RealDrives, MalagaGoesTheSameWayTwiceWithAGapBetween) {
   ROADBOOK_REQUIRE_DATA(a, "drives/malaga07_a");
   ROADBOOK_REQUIRE_DATA(b, "drives/malaga07_b");
@@ -188,9 +212,12 @@ TEST(RealDrives, MalagaGoesTheSameWayTwiceWithAGapBetween) {
     const int to = map.keyframes[static_cast<std::size_t>(loop.to)].drive_frame;
     ASSERT_TRUE(from < frames_of_a && to >= frames_of_a) << "neither part meets itself";
     ++joined;
-    // 16 frames are 0.8 s: the tolerance of the pairs plus the view ahead that both frames share.
-    EXPECT_NEAR(2.0 * from, test::frame_of_malaga_a(1600.0 + 2.0 * (to - frames_of_a)), 16.0)
+    // The loop sees as far ahead of frame `from` as the paired frame of `a` was driven after it.
+    const double paired = 0.5 * test::frame_of_malaga_a(1600.0 + 2.0 * (to - frames_of_a));
+    EXPECT_NEAR(loop.T_from_to.translation().x(), ahead_m(map, loop.from, paired),
+                kPairedTolerance * metres_a_frame(map, loop.from))
         << loop.from << " -> " << loop.to;
+    EXPECT_LT(std::abs(loop.T_from_to.translation().y()), 4.0) << "more than a lane";
   }
   EXPECT_GT(joined, 20);
   // The two passes coincide: they use the same street, at most a lane apart.

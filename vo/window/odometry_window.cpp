@@ -77,8 +77,7 @@ double log_factor_to_follow(double log_scale, int keyframes) {
 
 }  // namespace
 
-// The newest poses since the last gap, and the corners that they see. Poses before the last one
-// that sees too few stay fixed.
+// The newest poses since the last gap, and the corners that they see.
 VoWindow VisualOdometry::State::newest_window(std::vector<int>& tracks) const {
   const int count = static_cast<int>(result.keyframes.size());
   int first = count - 1;
@@ -95,7 +94,6 @@ VoWindow VisualOdometry::State::newest_window(std::vector<int>& tracks) const {
   }
   std::sort(seen.begin(), seen.end());
   seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-  std::vector<int> views_of_pose(window.T_odom_vehicle.size(), 0);
   for (const int id : seen) {
     const Track& track = result.tracks[static_cast<std::size_t>(id)];
     const auto& all = track.observations;
@@ -104,7 +102,6 @@ VoWindow VisualOdometry::State::newest_window(std::vector<int>& tracks) const {
                          return o.keyframe < first;
                        }).base();
     for (auto o = begin; o != all.end(); ++o) {
-      ++views_of_pose[static_cast<std::size_t>(o->keyframe - first)];
       window.views.push_back({o->keyframe - first, static_cast<int>(tracks.size()), track.camera,
                               keyframe_at(o->keyframe)
                                   .features[static_cast<std::size_t>(track.camera)]
@@ -114,8 +111,6 @@ VoWindow VisualOdometry::State::newest_window(std::vector<int>& tracks) const {
     tracks.push_back(id);
     window.points.push_back(*track.p_odom);
   }
-  for (int k = window.fixed; k < count - first; ++k)
-    if (views_of_pose[static_cast<std::size_t>(k)] < options.min_inliers) window.fixed = k + 1;
   return window;
 }
 
@@ -159,6 +154,7 @@ void VisualOdometry::State::adjust_newest() {
   WindowOptions window_options;
   window_options.sigma_px = options.feature_sigma_px;
   window_options.width_px = options.inlier_px;
+  window_options.least_views = options.min_inliers;
   adjust_window(rig, window_options, window);
   const std::size_t first = result.keyframes.size() - size;
   for (std::size_t k = 0; k < size; ++k) {

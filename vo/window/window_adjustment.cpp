@@ -12,7 +12,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kLeastInformation = 100.0;  // of a step [1/m^2, 1/rad^2]: what nothing holds stays
-constexpr double kNotProjectedPx2 = 1e8;   // more than any view that projects
+constexpr double kNotProjectedPx2 = 1e8;     // more than any view that projects
 
 using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
@@ -204,6 +204,10 @@ double window_cost(const Rig& rig, const VoWindow& window, const WindowOptions& 
 }
 
 void adjust_window(const Rig& rig, const WindowOptions& options, VoWindow& window) {
+  std::vector<int> views(window.T_odom_vehicle.size(), 0);
+  for (const WindowView& view : window.views) ++views[at(view.pose)];
+  for (std::size_t k = at(window.fixed); k < views.size(); ++k)
+    if (views[k] < options.least_views) window.fixed = static_cast<int>(k) + 1;
   WindowSolver(rig, options, window).run();
 }
 

@@ -31,6 +31,7 @@ struct WindowOptions {
   double sigma_px = 0.6;
   double width_px = 2.5;  ///< of the robust (Cauchy) cost
   int iterations = 3;
+  int least_views = 20;  ///< of a pose; one with fewer stays, with all before it
 };
 
 /// Sum of the robust costs of all views. A view that does not project counts more
