@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/se3.hpp"
+#include "sensors/camera_centre.hpp"
 #include "vo/odometry_run.hpp"
 #include "vo/wheels/false_times.hpp"
 #include "vo/wheels/wheel_correction.hpp"
@@ -20,12 +21,6 @@
 namespace roadbook {
 
 namespace {
-
-double camera_height(const Rig& rig) {
-  double sum = 0.0;
-  for (const auto& mounted : rig.cameras) sum += mounted.T_vehicle_camera.translation().z();
-  return sum / static_cast<double>(rig.cameras.size());
-}
 
 // Shares of the drive that the cameras alone must know to be asked about the wheels, and to work
 // without them.
@@ -73,7 +68,7 @@ class WheelTrial {
         masks_(masks),
         options_(options),
         progress_(progress),
-        height_m_(camera_height(drive.rig())) {}
+        height_m_(centre_of_cameras(drive.rig()).z()) {}
 
   VoResult run() const {
     const WheelModel& model = *drive_.wheel_model();

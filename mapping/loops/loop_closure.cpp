@@ -12,6 +12,7 @@
 #include "mapping/loops/odometry_check.hpp"
 #include "mapping/loops/place_recognition.hpp"
 #include "mapping/union_find.hpp"
+#include "sensors/camera_centre.hpp"
 #include "vo/rig_pose.hpp"
 
 namespace roadbook {

@@ -23,12 +23,6 @@ std::optional<Eigen::Vector3d> place_of(const VoResult& odometry,
 
 }  // namespace
 
-Eigen::Vector3d centre_of_cameras(const Rig& rig) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const auto& mounted : rig.cameras) sum += mounted.T_vehicle_camera.translation();
-  return sum / std::max(1.0, static_cast<double>(rig.cameras.size()));
-}
-
 std::optional<LoopScale> scale_of_loop(const Rig& rig,
                                        const VoResult& odometry,
                                        const LoopEdge& edge,

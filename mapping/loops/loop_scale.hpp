@@ -19,10 +19,6 @@ struct LoopScale {
   double sigma = 0.0;  ///< standard deviation
 };
 
-/// Mean of the cameras' places on the vehicle [m]. Motions without a scale are motions of this
-/// point: the vehicle's own origin also moves by the lever arm, which is known in metres.
-[[nodiscard]] Eigen::Vector3d centre_of_cameras(const Rig& rig);
-
 /// Scale from the corners of a loop's matches that both passes triangulated: median over corners of
 /// the logarithm of (distance from the later camera by the places of the earlier pass and
 /// `edge.T_from_to`) / (the same distance by the places of the later pass). Empty with fewer than 6

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mapping/union_find.hpp"
+#include "sensors/camera_centre.hpp"
 #include "vo/planar_motion.hpp"
 
 namespace roadbook {

@@ -6,6 +6,7 @@
 
 #include "base/cell_grid.hpp"
 #include "mapping/loops/loop_closure.hpp"
+#include "sensors/camera_centre.hpp"
 
 namespace roadbook {
 namespace {
@@ -13,26 +14,19 @@ namespace {
 constexpr double kCell = 4.0;
 constexpr double kLargestDrift = 0.7;  // of odometry's scale over a stretch, as a logarithm
 
-constexpr double kLeastHeightM = 0.05;  // of a camera whose height is known
-constexpr double kHeightSigma = 0.005;  // of the cameras' stated height: common to all windows
-constexpr int kSamePassKeyframes = 60;
+constexpr double kHeightSigma = 0.005;      // of the cameras' stated height: common to all windows
+constexpr int kSamePassKeyframes = 60;      // 12 m; a lap is longer
 constexpr double kLargestCorrection = 0.2;  // of the scale by the odometry, as a logarithm
 constexpr double kWindowSigma = 0.03;       // of a window's scale: slopes, kerbs, pitch of the car
-
-double camera_height(const Rig& rig) {
-  double sum = 0.0;
-  for (const auto& mounted : rig.cameras) sum += mounted.T_vehicle_camera.translation().z();
-  return sum / static_cast<double>(rig.cameras.size());
-}
 
 // Scale of a stretch by the ground around the car that the odometry saw: far more points than those
 // that the car drives over. Empty where it saw too few in half of the keyframes. Neighbours see
 // much the same ground: the standard deviation is that of a window.
-std::optional<GroundScale> scale_seen_ahead(const MappingInput& input,
-                                            const std::vector<int>& segments,
-                                            std::size_t begin,
-                                            std::size_t end,
-                                            int segment) {
+std::optional<GroundScale> odometry_scale(const MappingInput& input,
+                                          const std::vector<int>& segments,
+                                          std::size_t begin,
+                                          std::size_t end,
+                                          int segment) {
   std::vector<double> seen;
   std::size_t asked = 0;
   for (std::size_t k = begin; k < end; ++k) {
@@ -48,12 +42,6 @@ std::optional<GroundScale> scale_seen_ahead(const MappingInput& input,
 }
 
 }  // namespace
-
-std::optional<double> known_camera_height(const Rig& rig) {
-  if (rig.cameras.empty()) return std::nullopt;
-  const double height = camera_height(rig);
-  return height > kLeastHeightM ? std::optional(height) : std::nullopt;
-}
 
 std::vector<GroundView> view_from_above(const MappingInput& input,
                                         const std::vector<Eigen::Isometry3d>& T_map_vehicle,
@@ -71,8 +59,8 @@ std::vector<GroundView> view_from_above(const MappingInput& input,
     double best = std::hypot(options.ahead_m, options.beside_m);
     keyframes.visit_near(p.head<2>(), [&](int k) {
       if (segments[static_cast<std::size_t>(k)] != segment) return;
-      if (k - tracks[i].views.back().keyframe > options.keyframes_apart ||
-          tracks[i].views.front().keyframe - k > options.keyframes_apart)
+      if (k - tracks[i].views.back().keyframe > options.max_keyframe_distance ||
+          tracks[i].views.front().keyframe - k > options.max_keyframe_distance)
         return;
       const Eigen::Isometry3d& T = T_map_vehicle[static_cast<std::size_t>(k)];
       const Eigen::Vector3d p_vehicle = T.inverse() * p;
@@ -118,17 +106,17 @@ ScaleProfile ground_scale_profile(const MappingInput& input,
   const std::size_t count = T_map_vehicle.size();
   std::vector<std::vector<double>> ratios(count);
   GroundOptions near;
-  near.keyframes_apart = kSamePassKeyframes;
+  near.max_keyframe_distance = kSamePassKeyframes;
   const auto views = view_from_above(input, T_map_vehicle, tracks, near);
   for (const auto& view : views) {
     if (view.keyframe < 0) continue;
-    const double height = camera_height(input.rig_of(view.keyframe));
+    const double height = centre_of_cameras(input.rig_of(view.keyframe)).z();
     ratios[static_cast<std::size_t>(view.keyframe)].push_back(height /
                                                               (height - view.p_vehicle.z()));
   }
   const auto segments = segments_of(input.odometry.keyframes);
   const auto estimate = [&](std::size_t begin, std::size_t end, int segment) {
-    const auto seen = scale_seen_ahead(input, segments, begin, end, segment);
+    const auto seen = odometry_scale(input, segments, begin, end, segment);
     std::vector<double> all;
     for (std::size_t k = begin; k < end; ++k)
       if (segments[k] == segment) all.insert(all.end(), ratios[k].begin(), ratios[k].end());

@@ -26,7 +26,7 @@ struct GroundOptions {
   double height_m = 0.06;  ///< largest distance of a ground point from the ground level
   /// Largest difference of keyframes between a view of a point and the pose. Before loops are
   /// closed, poses of another pass have another height.
-  int keyframes_apart = std::numeric_limits<int>::max();
+  int max_keyframe_distance = std::numeric_limits<int>::max();
 };
 
 /// For each of `tracks` the nearest pose of the same stretch of its drive (no gap between) from
@@ -69,10 +69,6 @@ struct ScaleProfile {
 [[nodiscard]] std::optional<double> largest_sigma(const ScaleProfile& profile,
                                                   std::size_t begin,
                                                   std::size_t end);
-
-/// Mean height [m] of the cameras above the vehicle frame's origin, which lies on the ground; empty
-/// if it is not known: a calibration without a measured height states 0.
-[[nodiscard]] std::optional<double> known_camera_height(const Rig& rig);
 
 /// Estimates the factors that scale odometry without wheels to metres, from the cameras' height
 /// above ground in a window of `window` keyframes around each keyframe. A window with too few

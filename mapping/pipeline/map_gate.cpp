@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/format.hpp"
-#include "mapping/pipeline/ground.hpp"
+#include "sensors/camera_centre.hpp"
 
 namespace roadbook {
 namespace {

@@ -8,6 +8,7 @@
 #include "mapping/loops/loop_closure.hpp"
 #include "mapping/loops/loop_scale.hpp"
 #include "mapping/optimisation/graph_relaxation.hpp"
+#include "sensors/camera_centre.hpp"
 
 namespace roadbook {
 namespace {

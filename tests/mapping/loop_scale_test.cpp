@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
+#include "sensors/camera_centre.hpp"
 
 namespace roadbook {
 namespace {

@@ -83,10 +83,10 @@ TEST(VisualOdometry, WithoutWheelsKnowsTheScaleFromTheGround) {
   EXPECT_NEAR(chord / truth, 1.0, 0.05);
 }
 
-// Two laps by one camera. Poses found one after the other lost a third of their scale on a lap.
+// A lap and a third by one camera.
 TEST(VisualOdometry, WithOneCameraKeepsItsScaleAndHeading) {
-  for (const std::uint64_t seed : {2U}) {
-    const Driven run = drive(false, 1, seed, kStep, 400, 3600);
+  for (const std::uint64_t seed : {2U, 6U}) {
+    const Driven run = drive(false, 1, seed, kStep, 400, 2400);
     const auto& keyframes = run.result.keyframes;
     ASSERT_GT(keyframes.size(), 300U);
     const auto saw_ground = std::count_if(keyframes.begin(), keyframes.end(), [](const auto& k) {

@@ -3,6 +3,7 @@
 #include <iterator>
 #include <utility>
 
+#include "sensors/camera_centre.hpp"
 #include "vo/ground_scale.hpp"
 #include "vo/odometry_state.hpp"
 #include "vo/window/window_adjustment.hpp"
@@ -10,15 +11,8 @@
 namespace roadbook {
 namespace {
 
-constexpr int kFreePoses = 7;           // newest keyframes of a window; those before them stay
-constexpr int kStartKeyframes = 30;     // of a stretch, while the scale is hardly known
-constexpr double kLeastHeightM = 0.05;  // of cameras whose height is known
-
-Eigen::Vector3d centre_of(const Rig& rig) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const auto& mounted : rig.cameras) sum += mounted.T_vehicle_camera.translation();
-  return sum / static_cast<double>(rig.cameras.size());
-}
+constexpr int kFreePoses = 7;        // newest keyframes of a window; those before them stay
+constexpr int kStartKeyframes = 30;  // of a stretch, while the scale is hardly known
 
 // Scale by the ground around the newest pose. Where a slope begins, the ground ahead is tilted and
 // would look like another height: of several tilts, the one that most points agree on counts.
@@ -118,9 +112,9 @@ VoWindow VisualOdometry::State::newest_window(std::vector<int>& tracks) const {
 void VisualOdometry::State::follow_ground(VoWindow& window) {
   const auto size = window.T_odom_vehicle.size();
   const auto first = result.keyframes.size() - size;
-  const Eigen::Vector3d centre = centre_of(rig);
-  if (centre.z() < kLeastHeightM) return;
-  const auto scale = scale_by_ground_around(window, centre.z());
+  const auto height_m = known_camera_height(rig);
+  if (!height_m) return;
+  const auto scale = scale_by_ground_around(window, *height_m);
   if (!scale) return;
   last().ground_log_scale = std::log(scale->scale);
   if (std::any_of(result.keyframes.begin() + static_cast<std::ptrdiff_t>(first),
@@ -132,7 +126,7 @@ void VisualOdometry::State::follow_ground(VoWindow& window) {
     ++stretch;
   const double log_factor = log_factor_to_follow(*last().ground_log_scale, stretch);
   const double factor = std::exp(log_factor);
-  multiply_lengths(factor, centre, window);
+  multiply_lengths(factor, centre_of_cameras(rig), window);
   for (std::size_t k = first; k < result.keyframes.size(); ++k) {
     VoKeyframe& keyframe = result.keyframes[k];
     if (keyframe.ground_log_scale) *keyframe.ground_log_scale -= log_factor;

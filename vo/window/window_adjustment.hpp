@@ -34,8 +34,7 @@ struct WindowOptions {
   int least_views = 20;  ///< of a pose; one with fewer stays, with all before it
 };
 
-/// Sum of the robust costs of all views. A view that does not project counts more
-/// than any other.
+/// Sum of the robust costs of all views. A view that does not project counts more than any other.
 [[nodiscard]] double window_cost(const Rig& rig,
                                  const VoWindow& window,
                                  const WindowOptions& options);
@@ -43,7 +42,7 @@ struct WindowOptions {
 /// Minimises the cost of a car's motion and `window_cost` by Levenberg-Marquardt over free poses
 /// and points; points are eliminated (Schur complement). A car neither slides sideways nor hops:
 /// motions between successive free poses have the prior `driving_information`. Never raises the
-/// cost.
+/// cost. Raises `window.fixed` where a pose has fewer than `least_views`.
 void adjust_window(const Rig& rig, const WindowOptions& options, VoWindow& window);
 
 }  // namespace roadbook
