@@ -105,6 +105,32 @@ TEST(VisualOdometry, WithOneCameraKeepsItsScaleAndHeading) {
   }
 }
 
+// FAST finds another point of an object when its image grows: a track ends before.
+TEST(VisualOdometry, WithoutWheelsEndsTracksWhoseCornersComeMuchNearer) {
+  const Rig rig = test::fisheye_rig(4);
+  Random random(3, "drive");
+  const auto corners = test::corners_around(22.0, 900, random);
+  const auto share_of_long_tracks = [&](bool with_wheels) {
+    const Driven run = drive(with_wheels, 4, 3);
+    std::size_t much_nearer = 0;
+    for (const Track& track : run.result.tracks) {
+      const auto c = static_cast<std::size_t>(track.camera);
+      const auto range_m = [&](const TrackObservation& o) {
+        const auto frame = run.result.keyframes[static_cast<std::size_t>(o.keyframe)].frame;
+        const int corner = run.corner[frame][c][static_cast<std::size_t>(o.feature)];
+        return (run.truth[frame] * rig.cameras[c].T_vehicle_camera.translation() -
+                corners[static_cast<std::size_t>(corner)].p_world)
+            .norm();
+      };
+      const double ratio = range_m(track.observations.front()) / range_m(track.observations.back());
+      if (std::max(ratio, 1.0 / ratio) > 2.0) ++much_nearer;
+    }
+    return static_cast<double>(much_nearer) / static_cast<double>(run.result.tracks.size());
+  };
+  EXPECT_GT(share_of_long_tracks(true), 0.05);
+  EXPECT_LT(share_of_long_tracks(false), 0.01);
+}
+
 // Frames come every 0.07 m, without wheels. The odometry takes the frame nearest to 0.20 m, in the
 // length unit of the odometry.
 TEST(VisualOdometry, WithoutWheelsTakesTheFrameNearestToTheSpacing) {
