@@ -156,6 +156,18 @@ TEST(WindowAdjustment, FindsTheMinimumThatCeresFinds) {
   }
 }
 
+// With views of little weight the prior of the car's motion decides.
+TEST(WindowAdjustment, FindsTheMinimumThatCeresFindsWhereThePriorDecides) {
+  const WindowScene scene = make_window_scene(1, 3);
+  WindowOptions options;
+  options.sigma_px = 20.0;
+  options.width_px = 100.0;
+  options.iterations = 10;
+  VoWindow window = scene.start;
+  adjust_window(scene.rig, options, window);
+  EXPECT_NEAR(cost_of(scene, window, options) / cost_by_ceres(scene, options), 1.0, 0.02);
+}
+
 TEST(WindowAdjustment, ThreeIterationsTakeMostOfTheErrorAndKeepFixedPoses) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     const WindowScene scene = make_window_scene(1, seed);

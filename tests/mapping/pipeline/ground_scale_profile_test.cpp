@@ -10,8 +10,8 @@
 namespace roadbook {
 namespace {
 
-// A road of 40 m, driven twice by cameras alone. A unit of the odometry has `metres_a_unit`, and the
-// second pass lies `rise_m` higher, as before loops are closed.
+// A road of 40 m, driven twice by cameras alone. A unit of the odometry has `metres_a_unit`, and
+// the second pass lies `rise_m` higher, as before loops are closed.
 struct TwoPasses {
   MappingInput input;
   std::vector<Eigen::Isometry3d> poses;
@@ -19,17 +19,17 @@ struct TwoPasses {
 };
 
 TwoPasses drive_twice(double metres_a_unit, double rise_m) {
-  constexpr int kSteps = 200;
+  constexpr int kPassSteps = 200;
   constexpr double kStepM = 0.2;
   Random random(4, "road");
   TwoPasses road;
   road.input.half_rigs = {test::fisheye_rig()};
   road.input.has_wheels = {false};
   const double camera_m = road.input.half_rigs[0].cameras[0].T_vehicle_camera.translation().z();
-  for (int k = 0; k < 2 * kSteps; ++k) {
-    const bool again = k >= kSteps;
+  for (int k = 0; k < 2 * kPassSteps; ++k) {
+    const bool again = k >= kPassSteps;
     VoKeyframe keyframe;
-    keyframe.T_odom_vehicle = pose_from_planar((k % kSteps) * kStepM / metres_a_unit, 0.0, 0.0);
+    keyframe.T_odom_vehicle = pose_from_planar((k % kPassSteps) * kStepM / metres_a_unit, 0.0, 0.0);
     // The car's origin lies where the cameras' height over it is as calibrated.
     keyframe.T_odom_vehicle.translation().z() =
         camera_m / metres_a_unit - camera_m + (again ? rise_m : 0.0);
