@@ -93,7 +93,7 @@ void build_overviews(const GdalScope& scope,
                      const std::filesystem::path& file) {
   std::vector<int> factors;
   const int longest = std::max(dataset.GetRasterXSize(), dataset.GetRasterYSize());
-  for (int factor = 2; longest / factor >= tile_px / 2; factor *= 2) factors.push_back(factor);
+  for (int factor = 2; longest > factor / 2 * tile_px; factor *= 2) factors.push_back(factor);
   if (factors.empty()) return;
   const CPLErr code = dataset.BuildOverviews("AVERAGE", static_cast<int>(factors.size()),
                                              factors.data(), 0, nullptr, nullptr, nullptr);

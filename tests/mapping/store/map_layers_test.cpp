@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
 #include "base/error.hpp"
@@ -226,6 +227,27 @@ TEST(MapLayers, RastersComeBackAsTheyWere) {
     ASSERT_EQ(window.type(), pixels.type());
     EXPECT_EQ(cv::norm(window, pixels(part), cv::NORM_INF), 0.0);
     EXPECT_THROW((void)layers.read_raster(name, {0, 0, pixels.cols + 1, 5}), InvalidOption);
+  }
+}
+
+TEST(MapLayers, RastersOfAnyShapeGetOverviewsUntilOneTileHoldsThem) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapFileBuilder(path, "key").finish(small_map(1), {});
+  // Width [px], overviews above tiles of 256 px; whole tiles are where one too many is refused.
+  for (const auto& [width, overviews] :
+       {std::pair{255, 0}, {256, 0}, {257, 1}, {512, 1}, {513, 2}, {1024, 2}}) {
+    SCOPED_TRACE(width);
+    const cv::Mat pixels(31, width, CV_8UC1, cv::Scalar(9));
+    MapUpdate update(path);
+    write_geotiff(folder / "r.tif", pixels);
+    update.write_raster("strip", folder / "r.tif", {.description = "a raster"});
+    update.commit();
+    const std::string text =
+        output_of("(gdalinfo -json GPKG:" + path.string() + ":strip 2> /dev/null)");
+    const auto info = nlohmann::json::parse(text);
+    const auto found = info["bands"][0].value("overviews", nlohmann::json::array());
+    EXPECT_EQ(found.size(), static_cast<std::size_t>(overviews));
   }
 }
 
