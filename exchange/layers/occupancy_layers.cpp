@@ -38,13 +38,15 @@ PlainTable patch_table(const std::vector<OccupancyPatch>& patches) {
                   {"columns", FieldType::kInteger},
                   {"log_odds", FieldType::kBytes},
                   {"seen", FieldType::kBytes},
-                  {"hits", FieldType::kBytes}};
+                  {"hits", FieldType::kBytes},
+                  {"ends", FieldType::kBytes}};
   for (const OccupancyPatch& p : patches)
     table.rows.push_back(
         {p.session, p.t_ns, p.drive, p.begin_ns, p.end_ns, p.vehicle_patch.x_m, p.vehicle_patch.y_m,
          p.vehicle_patch.heading_rad, p.placed.x_m, p.placed.y_m, p.placed.heading_rad, p.cell_m,
          std::int64_t{p.rows}, std::int64_t{p.columns}, packed_numbers<std::int16_t>(p.log_odds),
-         packed_numbers<std::uint16_t>(p.seen), packed_numbers<std::uint16_t>(p.hits)});
+         packed_numbers<std::uint16_t>(p.seen), packed_numbers<std::uint16_t>(p.hits),
+         packed_numbers<std::uint16_t>(p.ends)});
   return table;
 }
 
@@ -209,12 +211,20 @@ OccupancyPatch patch_from(const TableRow& row, double cell_m) {
   p.log_odds = numbers_from<std::int16_t>(row, "log_odds", count);
   p.seen = numbers_from<std::uint16_t>(row, "seen", count);
   p.hits = numbers_from<std::uint16_t>(row, "hits", count);
+  // Grids of earlier versions do not have the ends.
+  if (row.has("ends")) p.ends = numbers_from<std::uint16_t>(row, "ends", count);
   return p;
 }
 
 }  // namespace
 
 double StoredOccupancy::prior_log_odds() const { return log_odds(prior); }
+
+std::map<std::string, ReadingWeight> StoredOccupancy::reading_weights() const {
+  std::map<std::string, ReadingWeight> by_drive;
+  for (const OccupancyDrive& d : drives) by_drive[d.drive] = {d.temper, d.sensor == "cameras"};
+  return by_drive;
+}
 
 const char* to_text(OccupancyUpdate update) {
   for (const auto& [one, text] : kUpdates)

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,7 @@ struct StoredOccupancy {
   std::vector<OccupancyPatch> patches;
 
   [[nodiscard]] double prior_log_odds() const;
+  [[nodiscard]] std::map<std::string, ReadingWeight> reading_weights() const;
 };
 
 [[nodiscard]] const char* to_text(OccupancyUpdate update);

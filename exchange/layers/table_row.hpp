@@ -34,6 +34,12 @@ class TableRow {
         return std::get<T>(values_[i]);
     fail(name, "no value of its type");
   }
+  /// Whether the table has a column of this name.
+  [[nodiscard]] bool has(const std::string& name) const {
+    for (const Field& field : fields_)
+      if (field.name == name) return true;
+    return false;
+  }
   /// A number, or `otherwise` if it is null.
   [[nodiscard]] double number(const std::string& name, double otherwise) const {
     for (std::size_t i = 0; i < fields_.size(); ++i)

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.hpp"
 #include "base/require_option.hpp"
 #include "mapping/occupancy/cell_rules.hpp"
+#include "mapping/occupancy/known_surfaces.hpp"
 #include "mapping/occupancy/patch_grid.hpp"
 
 namespace roadbook {
@@ -77,38 +79,30 @@ std::size_t add_ratio(PatchGrid& grid,
   return static_cast<std::size_t>(steps.count);
 }
 
-// Shortens the part of each beam that changes cells to the first surface that the readings agree
-// on. A reading gives no evidence about the ground behind a mapped surface: it has lost its
-// echo, or comes from another sensor.
-class KnownSurfaces {
- public:
-  KnownSurfaces(const PatchGrid& first, const InverseRangeModel& inverse)
-      : first_(first), threshold_(log_odds(kOccupied) - inverse.prior_log_odds()) {}
-
-  /// Distance along the beam behind which nothing changes [m]; the reading if no surface is before
-  /// it.
-  [[nodiscard]] double limit_m(const Eigen::Vector2d& origin,
-                               const Eigen::Vector2d& along,
-                               double read_m) const {
-    const double cell = first_.cell_m;
-    const auto entries = static_cast<std::size_t>(read_m / cell);
-    const BeamSteps steps(first_, origin, along, cell, entries);
-    const int last = steps.count - kBeside;
-    for (int k = 0; k < last; ++k) {
-      const std::size_t i = steps.cell(k);
-      if (first_.hits[i] >= kFewestHits && static_cast<double>(first_.cells[i].change) > threshold_)
-        return static_cast<double>(steps.entry + k * steps.entry_slope) / 65536.0 * cell;
-    }
-    return read_m;
-  }
-
- private:
-  static constexpr double kOccupied = 0.65;
-  static constexpr std::uint32_t kFewestHits = 2;
-  static constexpr int kBeside = 2;  // cells before the end of the reading: its own surface
-  const PatchGrid& first_;
-  double threshold_;
-};
+// One reading of a wide beam of full angle `cone_rad`, for which `inverse` was made: every cell of
+// the sector is changed once.
+std::size_t add_cone(PatchGrid& grid,
+                     const Eigen::Vector2d& origin,
+                     const Eigen::Vector2d& along,
+                     double cone_rad,
+                     double read_m,
+                     const InverseRangeModel& inverse,
+                     const KnownSurfaces* known) {
+  std::optional<ConeLimits> limits;
+  if (known != nullptr) limits.emplace(*known, grid, origin, along, cone_rad, read_m);
+  const auto row = inverse.changes(read_m, grid.cell_m);
+  std::size_t changed = 0;
+  for_each_cone_cell(grid, origin, along, cone_rad, inverse.step_m(), row.size(),
+                     [&](std::size_t index, std::size_t entry) {
+                       if (limits && !limits->holds(grid.middle(index))) return;
+                       grid.cells[index].change += row[entry];
+                       grid.cells[index].seen += 1.0F;
+                       ++changed;
+                     });
+  if (known == nullptr || known->limit_m(origin, along, read_m) >= read_m)
+    count_hit(grid, origin, along, read_m, inverse.max_m());
+  return changed;
+}
 
 std::size_t add_one(PatchGrid& grid,
                     std::vector<double>& ratios,
@@ -121,8 +115,9 @@ std::size_t add_one(PatchGrid& grid,
   const double read = std::min(b.read_m, inverse.max_m());
   if (options.update == OccupancyUpdate::kNaive)
     return add_naive(grid, origin, along, read, inverse.max_m(), kCertain);
-  if (options.cone_rad > 0.0) return add_cone(grid, origin, along, options.cone_rad, read, inverse);
-  const double limit = known != nullptr ? known->limit_m(origin, along, read) : read;
+  if (options.cone_rad > 0.0)
+    return add_cone(grid, origin, along, options.cone_rad, read, inverse, known);
+  const double limit = known != nullptr ? known->limit_m(origin, along, read) : INFINITY;
   if (options.update == OccupancyUpdate::kBayes)
     return add_ratio(grid, ratios, origin, along, read, limit, inverse);
   return add_beam(grid, origin, along, read, limit, inverse);
@@ -148,11 +143,11 @@ std::size_t fill_grid(PatchGrid& grid,
                       std::span<const RangeScan> scans,
                       const InverseRangeModel& inverse,
                       const BuildPatchesOptions& options) {
-  const bool naive = options.update == OccupancyUpdate::kNaive;
-  if (naive || options.cone_rad > 0.0) return add_scans(grid, scans, nullptr, inverse, options);
+  if (options.update == OccupancyUpdate::kNaive)
+    return add_scans(grid, scans, nullptr, inverse, options);
   PatchGrid first(grid);
   std::size_t updates = add_scans(first, scans, nullptr, inverse, options);
-  const KnownSurfaces known(first, inverse);
+  const KnownSurfaces known(first, inverse.prior_log_odds(), options.cone_rad);
   return updates + add_scans(grid, scans, &known, inverse, options);
 }
 
@@ -190,6 +185,9 @@ OccupancyPatch cropped_patch(const PatchGrid& grid) {
       patch.log_odds.push_back(static_cast<std::int16_t>(std::clamp(units, -32000.0, 32000.0)));
       patch.seen.push_back(counted(grid.cells[i].seen));
       patch.hits.push_back(counted(grid.hits[i]));
+      const Eigen::Vector2d mean =
+          grid.ends[i].cast<double>() / std::max(1.0, static_cast<double>(grid.hits[i]));
+      patch.ends.push_back(grid.hits[i] > 0 ? packed_end(mean) : 0);
     }
   return patch;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -44,7 +45,25 @@ struct OccupancyPatch {
   std::vector<std::int16_t> log_odds;  ///< change since before any reading, in 1/1000
   std::vector<std::uint16_t> seen;     ///< readings that changed the cell
   std::vector<std::uint16_t> hits;     ///< readings that ended in the cell
+  std::vector<std::uint16_t> ends;     ///< `packed_end` of their mean; 0: the middle
+
+  /// Mean place of the readings that ended in a cell [cells, patch]; the cell's middle without any.
+  [[nodiscard]] Eigen::Vector2d end_in(int column, int row, std::size_t cell) const {
+    const Eigen::Vector2d middle(column + 0.5, row + 0.5);
+    const int packed = ends.empty() ? 0 : ends[cell];
+    if (packed == 0) return middle;
+    return middle + Eigen::Vector2d((packed & 0xFF) - 128, (packed >> 8) - 128) / 256.0;
+  }
 };
+
+/// A place in a cell, from its middle [cells, -0.5 to 0.5], as two bytes: 128 + 256 times the place
+/// along the columns, then along the rows.
+[[nodiscard]] inline std::uint16_t packed_end(const Eigen::Vector2d& from_middle) {
+  const auto byte = [](double part) {
+    return static_cast<unsigned>(std::clamp(std::lround(128.0 + 256.0 * part), 1L, 255L));
+  };
+  return static_cast<std::uint16_t>(byte(from_middle.x()) | byte(from_middle.y()) << 8U);
+}
 
 /// Unit of `OccupancyPatch::log_odds`.
 inline constexpr double kLogOddsUnit = 1e-3;

@@ -68,7 +68,10 @@ CellShape CellShape::over(const Eigen::Vector2d& least,
 }
 
 PatchGrid::PatchGrid(const CellShape& shape)
-    : CellShape(shape), cells(shape.size()), hits(shape.size()) {}
+    : CellShape(shape),
+      cells(shape.size()),
+      hits(shape.size()),
+      ends(shape.size(), Eigen::Vector2f::Zero()) {}
 
 BeamSteps::BeamSteps(const CellShape& grid,
                      const Eigen::Vector2d& origin,
@@ -133,24 +136,6 @@ std::size_t add_beam(PatchGrid& grid,
   return static_cast<std::size_t>(steps.count);
 }
 
-std::size_t add_cone(PatchGrid& grid,
-                     const Eigen::Vector2d& origin,
-                     const Eigen::Vector2d& along,
-                     double cone_rad,
-                     double read_m,
-                     const InverseRangeModel& inverse) {
-  const auto row = inverse.changes(read_m, grid.cell_m);
-  std::size_t changed = 0;
-  for_each_cone_cell(grid, origin, along, cone_rad, inverse.step_m(), row.size(),
-                     [&](std::size_t index, std::size_t entry) {
-                       grid.cells[index].change += row[entry];
-                       grid.cells[index].seen += 1.0F;
-                       ++changed;
-                     });
-  count_hit(grid, origin, along, read_m, inverse.max_m());
-  return changed;
-}
-
 std::size_t add_naive(PatchGrid& grid,
                       const Eigen::Vector2d& origin,
                       const Eigen::Vector2d& along,
@@ -188,7 +173,10 @@ void count_hit(PatchGrid& grid,
   const Eigen::Vector2d end = (origin + read_m * along - grid.low) / grid.cell_m;
   const int column = static_cast<int>(std::floor(end.x()));
   const int row = static_cast<int>(std::floor(end.y()));
-  if (grid.holds(column, row)) ++grid.hits[grid.index(column, row)];
+  if (!grid.holds(column, row)) return;
+  const std::size_t cell = grid.index(column, row);
+  ++grid.hits[cell];
+  grid.ends[cell] += (end - Eigen::Vector2d(column + 0.5, row + 0.5)).cast<float>();
 }
 
 }  // namespace roadbook

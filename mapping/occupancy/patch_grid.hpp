@@ -37,11 +37,17 @@ struct CellShape {
            static_cast<std::size_t>(column);
   }
   [[nodiscard]] std::size_t size() const { return index(0, rows); }
+  [[nodiscard]] Eigen::Vector2d middle(std::size_t cell) const {
+    const std::size_t width = static_cast<std::size_t>(columns);
+    return low + cell_m * Eigen::Vector2d(static_cast<double>(cell % width) + 0.5,
+                                          static_cast<double>(cell / width) + 0.5);
+  }
 };
 
 struct PatchGrid : CellShape {
-  std::vector<OccupancyCell> cells;  ///< row by row
-  std::vector<std::uint32_t> hits;   ///< readings that end in the cell
+  std::vector<OccupancyCell> cells;   ///< row by row
+  std::vector<std::uint32_t> hits;    ///< readings that end in the cell
+  std::vector<Eigen::Vector2f> ends;  ///< sum of their ends from the middle of the cell [cells]
 
   explicit PatchGrid(const CellShape& shape);
 };
@@ -95,15 +101,6 @@ inline std::size_t add_beam(PatchGrid& grid,
                             const InverseRangeModel& inverse) {
   return add_beam(grid, origin, along, read_m, read_m, inverse);
 }
-
-/// The same for a beam of full angle `cone_rad`, for which `inverse` was made: every cell of the
-/// sector is changed once.
-std::size_t add_cone(PatchGrid& grid,
-                     const Eigen::Vector2d& origin,
-                     const Eigen::Vector2d& along,
-                     double cone_rad,
-                     double read_m,
-                     const InverseRangeModel& inverse);
 
 /// The naive rule for one reading: `change` is -`certain`, 0 or `certain` (free, unknown,
 /// occupied). Cells before the reading's end are free, the cell at the end is occupied.

@@ -7,11 +7,13 @@
 #include "base/error.hpp"
 #include "mapping/occupancy/cell_rules.hpp"
 #include "mapping/occupancy/reading_dependence.hpp"
+#include "sensors/range/inverse_range.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr double kMove = 0.25;  // [cells]
+constexpr double kMove = 0.25;           // [cells]
+constexpr std::uint32_t kFewAtEdge = 3;  // readings
 
 std::array<Eigen::Vector2d, 4> corners_of(const OccupancyPatch& patch, const PlanePose& at) {
   const Eigen::Isometry2d T = at.isometry();
@@ -49,7 +51,7 @@ struct DriveSum {
     if (with_surfaces) grid.hits[to] += patch.hits[from];
     grid.newest[to] = std::max(grid.newest[to], number);
   }
-  /// A cell of the patch and the map's cell at its middle.
+  /// A cell of the patch and the map's cell where its readings ended.
   void add_surface(const OccupancyPatch& patch,
                    std::size_t from,
                    std::size_t to,
@@ -122,7 +124,29 @@ bool is_aligned(const OccupancyPatch& patch, const CellShape& shape) {
          std::abs(p.x() - std::round(p.x())) < kSame && std::abs(p.y() - std::round(p.y())) < kSame;
 }
 
-// For every cell of the patch with evidence of a surface: the map's cell at its middle.
+// Where the evidence of a surface in a cell lies [cells, patch]: where its readings ended. The
+// noise of readings spreads evidence to the cells beside; there it is as far from their middle as
+// that of the readings next to them is.
+Eigen::Vector2d place_of_evidence(const OccupancyPatch& patch,
+                                  int column,
+                                  int row,
+                                  std::size_t cell) {
+  if (patch.hits[cell] > 0) return patch.end_in(column, row, cell);
+  const Eigen::Vector2d middle(column + 0.5, row + 0.5);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double count = 0.0;
+  for (int r = std::max(0, row - 1); r <= std::min(row + 1, patch.rows - 1); ++r)
+    for (int c = std::max(0, column - 1); c <= std::min(column + 1, patch.columns - 1); ++c) {
+      const auto near = static_cast<std::size_t>(r) * static_cast<std::size_t>(patch.columns) +
+                        static_cast<std::size_t>(c);
+      if (patch.hits[near] == 0) continue;
+      sum += patch.hits[near] * (patch.end_in(c, r, near) - Eigen::Vector2d(c + 0.5, r + 0.5));
+      count += patch.hits[near];
+    }
+  return count > 0.0 ? Eigen::Vector2d(middle + sum / count) : middle;
+}
+
+// For every cell of the patch with evidence of a surface: the map's cell where its readings ended.
 template <typename Add>
 void draw_surfaces(const OccupancyPatch& patch, const OccupancyGrid& grid, const Add& add) {
   const Eigen::Isometry2d T = patch.placed.isometry();
@@ -132,12 +156,39 @@ void draw_surfaces(const OccupancyPatch& patch, const OccupancyGrid& grid, const
           static_cast<std::size_t>(r) * static_cast<std::size_t>(patch.columns) +
           static_cast<std::size_t>(c);
       if (patch.seen[from] == 0 || (patch.log_odds[from] < 0 && patch.hits[from] == 0)) continue;
-      const Eigen::Vector2d middle = T * (patch.cell_m * Eigen::Vector2d(c + 0.5, r + 0.5));
-      const Eigen::Vector2d p = (middle - grid.shape.low) / grid.shape.cell_m;
+      const Eigen::Vector2d end = T * (patch.cell_m * place_of_evidence(patch, c, r, from));
+      const Eigen::Vector2d p = (end - grid.shape.low) / grid.shape.cell_m;
       const int column = static_cast<int>(std::floor(p.x()));
       const int row = static_cast<int>(std::floor(p.y()));
       if (grid.shape.holds(column, row)) add(from, grid.shape.index(column, row));
     }
+}
+
+// At the edge of what was seen, rays may have passed beside the surface that ends the view: a cell
+// is a square, the surface in it a curve, and no ray through the next cell would have met it. A
+// cell there that few readings passed stays unknown: of such cells with one to three readings, up
+// to 7 % are occupied, of those with more 0.4 % (docs/results/occupancy.md). `kept`: cells where
+// few readings count.
+void forget_few_at_edge(const std::vector<char>& kept, OccupancyGrid& grid) {
+  const CellShape& shape = grid.shape;
+  const auto unknown = [&](int column, int row) {
+    return !shape.holds(column, row) || grid.seen[shape.index(column, row)] == 0;
+  };
+  std::vector<std::size_t> few;
+  for (int r = 0; r < shape.rows; ++r)
+    for (int c = 0; c < shape.columns; ++c) {
+      const std::size_t i = shape.index(c, r);
+      if (grid.seen[i] > 0 && grid.seen[i] <= kFewAtEdge && grid.change[i] < 0.0F && kept[i] == 0 &&
+          (unknown(c - 1, r) || unknown(c + 1, r) || unknown(c, r - 1) || unknown(c, r + 1)))
+        few.push_back(i);
+    }
+  for (const std::size_t i : few) {
+    grid.change[i] = 0.0F;
+    grid.seen[i] = grid.hits[i] = 0;
+    grid.effective[i] = 0.0F;
+    grid.drives[i] = 0;
+    grid.newest[i] = -1;
+  }
 }
 
 CellShape shape_over(const std::vector<OccupancyPatch>& patches,
@@ -159,13 +210,16 @@ double OccupancyGrid::probability(std::size_t cell, double prior_log_odds) const
 }
 
 double OccupancyGrid::sigma(std::size_t cell, double prior_log_odds) const {
+  static const double half_passed = -0.5 * std::log1p(-kMetInCell);
   const double p = probability(cell, prior_log_odds);
-  return std::sqrt(p * (1.0 - p) / (1.0 + static_cast<double>(effective[cell])));
+  const double n = std::min(static_cast<double>(effective[cell]),
+                            std::abs(static_cast<double>(change[cell])) / half_passed);
+  return std::sqrt(p * (1.0 - p) / (1.0 + n));
 }
 
 OccupancyGrid place_patches(std::vector<OccupancyPatch>& patches,
                             const PoseOfKeyframe& pose_of,
-                            const std::map<std::string, double>& temper) {
+                            const std::map<std::string, ReadingWeight>& drives) {
   OccupancyGrid grid;
   std::vector<std::size_t> used;
   for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -193,11 +247,12 @@ OccupancyGrid place_patches(std::vector<OccupancyPatch>& patches,
   grid.effective.assign(cells, 0.0F);
   grid.drives.assign(cells, 0);
   grid.newest.assign(cells, -1);
-  std::vector<std::string> drives;
+  std::vector<std::string> names;
   for (const std::size_t i : used)
-    if (std::find(drives.begin(), drives.end(), patches[i].drive) == drives.end())
-      drives.push_back(patches[i].drive);
-  for (const std::string& drive : drives) {
+    if (std::find(names.begin(), names.end(), patches[i].drive) == names.end())
+      names.push_back(patches[i].drive);
+  std::vector<char> kept(cells, 0);
+  for (const std::string& drive : names) {
     DriveSum sum(cells);
     for (std::size_t n = 0; n < used.size(); ++n) {
       const OccupancyPatch& patch = patches[used[n]];
@@ -213,9 +268,14 @@ OccupancyGrid place_patches(std::vector<OccupancyPatch>& patches,
           sum.add_surface(patch, from, to, number, grid);
         });
     }
-    const auto found = temper.find(drive);
-    sum.add_to(found == temper.end() ? 1.0 : found->second, grid);
+    const auto found = drives.find(drive);
+    const ReadingWeight readings = found == drives.end() ? ReadingWeight{} : found->second;
+    sum.add_to(readings.temper, grid);
+    if (readings.few_count)
+      for (std::size_t i = 0; i < cells; ++i)
+        if (sum.seen[i] > 0) kept[i] = 1;
   }
+  forget_few_at_edge(kept, grid);
   // Numbers in the order of time become those of the patches.
   for (std::int32_t& newest : grid.newest)
     if (newest >= 0) newest = static_cast<std::int32_t>(used[static_cast<std::size_t>(newest)]);

@@ -96,8 +96,8 @@ TEST(MakeOccupancy, AGridOfASimulatedDriveAgreesWithItsTruth) {
   ASSERT_TRUE(result.demands.truth);
   EXPECT_LT(result.demands.truth->calibration_error, 0.03);
   EXPECT_GT(result.demands.truth->free_recall, 0.95);
-  EXPECT_LT(result.demands.truth->occupied_called_free, 0.05);
-  EXPECT_GT(result.demands.truth->occupied_recall, 0.7);
+  EXPECT_LT(result.demands.truth->occupied_called_free, 0.005);
+  EXPECT_GT(result.demands.truth->occupied_recall, 0.85);
   const auto read = read_occupancy_layers(MapLayers(place.map));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->patches.size(), drive.patches);

@@ -245,9 +245,8 @@ OccupancyResult make_occupancy(const OccupancyRequest& request, Messages& messag
   for (const auto& folder : request.drives)
     result.drives.push_back(cameras ? add_cameras(request, folder, map, result.stored)
                                     : add_drive(request, folder, map, result.stored, messages));
-  std::map<std::string, double> temper;
-  for (const OccupancyDrive& d : result.stored.drives) temper[d.drive] = d.temper;
-  result.grid = place_patches(result.stored.patches, keyframe_poses(map), temper);
+  result.grid =
+      place_patches(result.stored.patches, keyframe_poses(map), result.stored.reading_weights());
   if (result.grid.shape.size() == 0)
     throw Refused("error: " + request.map.string() +
                   ": occupancy_patches: got none on poses of this map, want some");

@@ -99,9 +99,8 @@ std::optional<OccupancyDemands> demands_of_map(const std::filesystem::path& map_
                                                const Map& map) {
   auto stored = read_occupancy_layers(MapLayers(map_file));
   if (!stored) return std::nullopt;
-  std::map<std::string, double> temper;
-  for (const OccupancyDrive& d : stored->drives) temper[d.drive] = d.temper;
-  const OccupancyGrid grid = place_patches(stored->patches, keyframe_poses(map), temper);
+  const OccupancyGrid grid =
+      place_patches(stored->patches, keyframe_poses(map), stored->reading_weights());
   if (grid.shape.size() == 0) return std::nullopt;
   return occupancy_demands(*stored, grid, map,
                            true_place(map_file, map, newest_drive(map_file, map, *stored)));

@@ -55,7 +55,7 @@ OccupancyGrid grid_of_patches(const std::vector<RangeScan>& scans,
   const auto pose = [](const std::string&, std::int64_t) {
     return std::optional<PlanePose>(PlanePose{});
   };
-  return place_patches(built.patches, pose, {{"study", temper}});
+  return place_patches(built.patches, pose, {{"study", {temper}}});
 }
 
 OccupancyGrid hand_set_grid(const std::vector<RangeScan>& scans, const RuleOptions& options) {

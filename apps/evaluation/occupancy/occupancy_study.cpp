@@ -69,6 +69,22 @@ void study_wide_beams(const SimulatedScans& drive,
   write_grid_pictures(out / "wide.png", grids, 3);
 }
 
+// Three people cross the lane while the car drives by: what they leave in the grid.
+void study_people(const SimulatedScansOptions& simulated,
+                  const std::filesystem::path& out,
+                  const Progress& progress,
+                  std::vector<OccupancyCase>& cases) {
+  SimulatedScansOptions visit = simulated;
+  visit.place = "zurich";
+  visit.size = "full";
+  visit.visit = 1;
+  const SimulatedScans crossed = simulate_scans(out / "drive_people", visit, progress);
+  const RuleOptions rules{.max_m = crossed.max_m};
+  const CaseTable table(crossed, rules);
+  for (const GridRule rule : {GridRule::kNaive, GridRule::kTempered})
+    (void)table.add("people", to_text(rule), grid_by_rule(crossed.scans, rule, rules), cases);
+}
+
 }  // namespace
 
 std::vector<OccupancyCase> study_occupancy(const std::filesystem::path& out,
@@ -96,6 +112,7 @@ std::vector<OccupancyCase> study_occupancy(const std::filesystem::path& out,
       .add("failing", to_text(GridRule::kTempered),
            grid_by_rule(failing, GridRule::kTempered, rules), cases);
   study_wide_beams(noisy, options, out, cases);
+  study_people(simulated, out, progress, cases);
   std::vector<std::pair<std::string, OccupancyTruth>> curves;
   for (const OccupancyCase& one : cases)
     if (one.sensor == "mixture") curves.emplace_back(one.rule, one.score);

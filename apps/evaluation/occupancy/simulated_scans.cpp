@@ -47,6 +47,7 @@ SimulatedScans simulate_scans(const std::filesystem::path& folder,
                               const Progress& progress) {
   ScenarioOptions variant;
   variant.size = options.size;
+  variant.visit = options.visit;
   const Scenario scenario = load_scenario(options.place, variant);
   SimulateOptions simulation;
   simulation.seed = options.seed;

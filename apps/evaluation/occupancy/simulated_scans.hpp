@@ -23,6 +23,7 @@ struct SimulatedScans {
 struct SimulatedScansOptions {
   std::string place = "zurich";
   std::string size = "full";
+  int visit = 0;
   bool noise = true;
   EffectSizes effects;
   std::uint64_t seed = 1;

@@ -46,13 +46,14 @@ struct StoredHall {
     one.temper = 0.25;
     one.mixture = mixture;
     stored.drives.push_back(one);
-    grid = place_patches(stored.patches,
-                         [&](const std::string&, std::int64_t t) -> std::optional<PlanePose> {
-                           for (const PatchAnchor& anchor : drive.anchors)
-                             if (anchor.t_ns == t) return anchor.map_vehicle;
-                           return std::nullopt;
-                         },
-                         {{"hall", 0.25}});
+    grid = place_patches(
+        stored.patches,
+        [&](const std::string&, std::int64_t t) -> std::optional<PlanePose> {
+          for (const PatchAnchor& anchor : drive.anchors)
+            if (anchor.t_ns == t) return anchor.map_vehicle;
+          return std::nullopt;
+        },
+        stored.reading_weights());
     MapFileBuilder(map, "key").finish(test::small_map(1), {});
     MapUpdate update(map);
     write_occupancy_layers(update, stored, grid);
@@ -75,10 +76,30 @@ TEST(OccupancyLayers, PatchesReadBackToTheSameNumbers) {
     EXPECT_EQ(a.log_odds, b.log_odds);
     EXPECT_EQ(a.seen, b.seen);
     EXPECT_EQ(a.hits, b.hits);
+    EXPECT_EQ(a.ends, b.ends);
     EXPECT_EQ(a.vehicle_patch.x_m, b.vehicle_patch.x_m);
     EXPECT_EQ(a.placed.y_m, b.placed.y_m);
     EXPECT_EQ(a.t_ns, b.t_ns);
   }
+}
+
+// Maps of earlier versions do not have column `ends`: surfaces lie in the middles of cells then.
+TEST(OccupancyLayers, GridsWithoutEndsAreRead) {
+  const StoredHall hall;
+  MapLayers layers(hall.map);
+  PlainTable table = layers.read_table("occupancy_patches");
+  ASSERT_EQ(table.fields.back().name, "ends");
+  table.fields.pop_back();
+  for (auto& row : table.rows) row.pop_back();
+  MapUpdate update(hall.map);
+  update.write_table(table);
+  update.commit();
+  const auto read = read_occupancy_layers(MapLayers(hall.map));
+  ASSERT_TRUE(read);
+  const OccupancyPatch& patch = read->patches[0];
+  EXPECT_EQ(patch.hits, hall.stored.patches[0].hits);
+  EXPECT_TRUE(patch.ends.empty());
+  EXPECT_EQ(patch.end_in(3, 2, 7), Eigen::Vector2d(3.5, 2.5));
 }
 
 TEST(OccupancyLayers, RastersHoldTheGridAndNothingWhereNoReadingCame) {

@@ -43,6 +43,23 @@ double probability_at(const OccupancyGrid& grid, const Eigen::Vector2d& p) {
   return grid.seen[i] == 0 ? NAN : grid.probability(i, prior);
 }
 
+bool called_free(const OccupancyGrid& grid, const Eigen::Vector2d& p, double prior) {
+  if (std::isnan(probability_at(grid, p))) return false;
+  const Eigen::Vector2d cell = (p - grid.shape.low) / grid.shape.cell_m;
+  const std::size_t i = grid.shape.index(static_cast<int>(cell.x()), static_cast<int>(cell.y()));
+  return is_free(grid.probability(i, prior), grid.sigma(i, prior));
+}
+
+// Whether a cell or one that touches it is unknown.
+bool is_at_edge(const OccupancyGrid& grid, std::size_t cell) {
+  const int column = static_cast<int>(cell) % grid.shape.columns;
+  const int row = static_cast<int>(cell) / grid.shape.columns;
+  for (int r = row - 1; r <= row + 1; ++r)
+    for (int c = column - 1; c <= column + 1; ++c)
+      if (!grid.shape.holds(c, r) || grid.seen[grid.shape.index(c, r)] == 0) return true;
+  return false;
+}
+
 // The judge walks the same columns with plain arithmetic.
 TEST(PatchGrid, ABeamChangesTheCellsThatAPlainWalkFinds) {
   const InverseRangeModel inverse = hall_inverse();
@@ -111,6 +128,145 @@ TEST(OccupancyPatches, LostEchoesDoNotFreeTheGroundBehindAMappedWall) {
     known += std::isnan(probability_at(grid, {x, 3.6})) ? 0 : 1;
   EXPECT_LT(known, cells / 4);
   for (double x = 2.0; x < 28.0; x += 0.5) EXPECT_GT(probability_at(grid, {x, 3.05}), 0.9) << x;
+}
+
+// Every tenth reading has lost its echo, and each stretch of the wall has few echoes: a wall is
+// known between its echoes too.
+TEST(OccupancyPatches, AWallIsKnownBetweenItsEchoes) {
+  HallDrive drive = hall_drive(9, {0.0, 0.1, 0.0, 0.5}, 0.03, 60);
+  for (RangeScan& scan : drive.scans)
+    std::erase_if(scan.beams, [](const ScanBeam& b) { return b.beam % 2 == 1; });
+  auto built = patches_of(drive);
+  const OccupancyGrid grid = place_patches(built.patches, poses_of(drive), {});
+  int known = 0, cells = 0;
+  for (double x = 2.0; x < 28.0; x += 0.1, ++cells)
+    known += std::isnan(probability_at(grid, {x, 3.6})) ? 0 : 1;
+  EXPECT_LT(known, cells / 20);
+}
+
+// Two people stand before a wall and go away half way through the patch: the beams that pass
+// afterwards free their places and see the wall behind them.
+TEST(OccupancyPatches, WhoWentAwayLimitsNoLaterReading) {
+  HallDrive drive = hall_drive(10);
+  for (std::size_t s = 0; s < 30; ++s)
+    for (ScanBeam& b : drive.scans[s].beams) {
+      const Eigen::Vector2d at = drive.scans[s].origin + b.read_m * b.along.cast<double>();
+      if (s < 6 && std::abs(at.x() - 6.0) < 0.5 && at.y() > 2.5) b.read_m *= 0.6;
+    }
+  auto built = patches_of(drive);
+  const OccupancyGrid grid = place_patches(built.patches, poses_of(drive), {});
+  for (double x = 5.0; x < 7.0; x += 0.1) {
+    for (double y = 0.5; y < 2.5; y += 0.1) EXPECT_LT(probability_at(grid, {x, y}), 0.65) << x;
+    EXPECT_GT(probability_at(grid, {x, 3.05}), 0.65) << x;
+  }
+}
+
+// Twelve ultrasonic sensors around the car, a tenth of whose readings has lost its echo.
+TEST(OccupancyPatches, LostEchoesOfWideBeamsFreeNoGroundBehindAWall) {
+  constexpr double kCone_rad = 0.44;
+  HallDrive drive = hall_drive(11, {}, 0.03, 960);
+  Random random(11, "cones");
+  for (RangeScan& scan : drive.scans) {
+    std::erase_if(scan.beams, [](const ScanBeam& b) { return b.beam % 6 != 0; });
+    for (ScanBeam& b : scan.beams) {
+      double nearest = kHallMax_m;
+      for (int i = -20; i <= 20; ++i) {
+        const Eigen::Vector2d ray =
+            Eigen::Rotation2Dd(kCone_rad / 40.0 * i) * b.along.cast<double>();
+        nearest = std::min(nearest, test::hall_distance(scan.origin, ray));
+      }
+      b.read_m = random.uniform() < 0.1 ? kHallMax_m : nearest + 0.02 * random.normal();
+    }
+  }
+  const InverseRangeModel inverse(mixture_of({0.02, 0.1, 0.01, 0.5}, 0.03), kHallMax_m,
+                                  {.cell_m = 0.1, .surfaces_per_m = 0.2, .cone_rad = kCone_rad});
+  auto built = build_patches(drive.scans, drive.anchor_of, drive.anchors, "hall", inverse,
+                             {.cone_rad = kCone_rad});
+  const OccupancyGrid grid = place_patches(built.patches, poses_of(drive), {});
+  int free = 0, cells = 0;
+  for (double x = 4.0; x < 26.0; x += 0.1, ++cells)
+    free += called_free(grid, {x, 3.8}, inverse.prior_log_odds()) ? 1 : 0;
+  EXPECT_LT(free, cells / 20);
+  for (double x = 4.0; x < 26.0; x += 0.5) EXPECT_LT(probability_at(grid, {x, 1.5}), 0.05) << x;
+}
+
+// The judge adds up the places of all readings that ended in a cell.
+TEST(OccupancyPatches, KeepWhereReadingsEndedInACell) {
+  const HallDrive drive = hall_drive(12);
+  const BuildPatchesOptions whole{.patch_m = 100.0};
+  const auto built = patches_of(drive, whole);
+  ASSERT_EQ(built.patches.size(), 1U);
+  const OccupancyPatch& patch = built.patches[0];
+  const Eigen::Isometry2d T_patch_map =
+      (drive.anchors[drive.scans.size() / 2].map_vehicle.isometry() *
+       patch.vehicle_patch.isometry())
+          .inverse();
+  std::vector<Eigen::Vector2d> sums(patch.hits.size(), Eigen::Vector2d::Zero());
+  std::vector<int> counts(patch.hits.size(), 0);
+  for (const RangeScan& scan : drive.scans)
+    for (const ScanBeam& b : scan.beams) {
+      if (b.read_m >= kHallMax_m - 1e-6) continue;
+      const Eigen::Vector2d end =
+          T_patch_map * (scan.origin + b.read_m * b.along.cast<double>()) / patch.cell_m;
+      const auto cell = static_cast<std::size_t>(std::floor(end.y()) * patch.columns + end.x());
+      sums[cell] += end;
+      ++counts[cell];
+    }
+  int compared = 0;
+  for (int r = 0; r < patch.rows; ++r)
+    for (int c = 0; c < patch.columns; ++c) {
+      const auto cell = static_cast<std::size_t>(r * patch.columns + c);
+      // Readings that a known surface limits, or on a line between two cells, count elsewhere.
+      if (counts[cell] == 0 || counts[cell] != patch.hits[cell]) continue;
+      ASSERT_LT((patch.end_in(c, r, cell) - sums[cell] / counts[cell]).cwiseAbs().maxCoeff(), 0.01);
+      ++compared;
+    }
+  EXPECT_GT(compared, 500);
+}
+
+// A cell behind a surface: many readings that say next to nothing leave it undecided, though the
+// probability before any reading is low.
+TEST(OccupancyPatches, ReadingsThatSayNothingFreeNothing) {
+  OccupancyGrid grid;
+  grid.shape = CellShape{{0.0, 0.0}, 1.0, 3, 1};
+  grid.change = {-0.01F, -4.0F, 0.01F};
+  grid.effective = {100.0F, 100.0F, 100.0F};
+  const double prior = log_odds(0.05);
+  const auto free = [&](std::size_t i) {
+    return is_free(grid.probability(i, prior), grid.sigma(i, prior));
+  };
+  EXPECT_FALSE(free(0));
+  EXPECT_TRUE(free(1));
+  EXPECT_FALSE(free(2));
+  // A ray that passes leaves 1 - pi / 8 of the odds; half of that change counts as a reading.
+  grid.change[0] = static_cast<float>(1.5 * std::log(1.0 - 3.14159265358979 / 8.0));
+  const double p = grid.probability(0, prior);
+  EXPECT_NEAR(grid.sigma(0, prior), std::sqrt(p * (1.0 - p) / 4.0), 1e-6);
+  grid.effective[0] = 1.0F;
+  EXPECT_NEAR(grid.sigma(0, prior), std::sqrt(p * (1.0 - p) / 2.0), 1e-6);
+}
+
+// Rays through ground that no other reaches: one, three and four of them in the same cells.
+TEST(OccupancyPatches, FewRaysAtTheEdgeOfTheViewLeaveTheGroundUnknown) {
+  HallDrive drive;
+  drive.anchors.push_back({"hall", 0, {}});
+  const auto known = [&](int rays) {
+    drive.scans.clear();
+    drive.anchor_of.clear();
+    for (int i = 0; i < rays; ++i) {
+      drive.scans.push_back({i, {0.05, 0.05}, {{0, Eigen::Vector2f(1.0F, 0.0F), kHallMax_m}}});
+      drive.anchor_of.push_back(0);
+    }
+    auto built = patches_of(drive);
+    const OccupancyGrid grid = place_patches(built.patches, poses_of(drive), {});
+    int cells = 0;
+    for (double x = 1.0; x < 8.0; x += 0.1)
+      cells += std::isnan(probability_at(grid, {x + 0.05, 0.05})) ? 0 : 1;
+    return cells;
+  };
+  EXPECT_EQ(known(1), 0);
+  EXPECT_EQ(known(3), 0);
+  EXPECT_GE(known(4), 69);
 }
 
 TEST(OccupancyPatches, AreTheSameOnAnyNumberOfThreads) {
@@ -185,38 +341,45 @@ double wall_thickness(const OccupancyGrid& grid) {
   return occupied / lines;
 }
 
-// The drive bends by odometry's error; then a loop closure makes it straight. Patches that follow
-// their poses draw the wall at the place of a grid that is built again from the readings.
-TEST(OccupancyPatches, FollowTheirPosesWhenALoopClosureMovesThem) {
+// The drive bends by odometry's error [rad a metre]; then a loop closure makes it straight. Patches
+// that follow their poses draw the wall at the place of a grid that is built again from the
+// readings. Returns how many times as thick the wall is.
+double thickening(double bend, double patch_m) {
   const HallDrive straight = hall_drive(5);
   const HallDrive right = moved_by(straight, [](std::size_t) {
     Eigen::Isometry2d T = Eigen::Isometry2d::Identity();
     T.linear() = kTurn.toRotationMatrix();
     return T;
   });
-  const HallDrive bent = moved_by(straight, [](std::size_t s) {
+  const HallDrive bent = moved_by(straight, [&](std::size_t s) {
     Eigen::Isometry2d T = Eigen::Isometry2d::Identity();
-    T.linear() = Eigen::Rotation2Dd(0.0008 * static_cast<double>(s)).toRotationMatrix();
+    T.linear() = Eigen::Rotation2Dd(0.25 * bend * static_cast<double>(s)).toRotationMatrix();
     T.translation() = Eigen::Vector2d(0.002 * static_cast<double>(s), -0.6);
     return T;
   });
-  const std::map<std::string, double> temper{{"hall", 0.2}};
+  const std::map<std::string, ReadingWeight> temper{{"hall", {0.2}}};
   auto built_again = patches_of(right);
   const OccupancyGrid again = place_patches(built_again.patches, poses_of(right), temper);
-  auto built_bent = patches_of(bent);
+  auto built_bent = patches_of(bent, {.patch_m = patch_m});
   const std::size_t count = built_bent.patches.size();
   EXPECT_EQ(place_patches(built_bent.patches, poses_of(bent), temper).moved, 0U);
   const OccupancyGrid moved = place_patches(built_bent.patches, poses_of(right), temper);
   EXPECT_GT(moved.moved, count / 2);
   const double thick = wall_thickness(moved);
   const double judge = wall_thickness(again);
-  RecordProperty("ratio", std::to_string(thick / judge));
-  EXPECT_GT(judge, 0.08);
-  EXPECT_GT(thick, 0.9 * judge);
-  // A turned patch rounds the place of a cell once more, by up to half a cell to either side.
-  EXPECT_LT(thick, judge + 0.1);
   // Placed again at the same poses: nothing moves any more.
   EXPECT_EQ(place_patches(built_bent.patches, poses_of(right), temper).moved, 0U);
+  EXPECT_GT(judge, 0.08);
+  EXPECT_GT(thick, 0.08);
+  return thick / judge;
+}
+
+TEST(OccupancyPatches, FollowTheirPosesWhenALoopClosureMovesThem) {
+  EXPECT_LT(thickening(0.0008, 6.0), 1.1);  // 4.6 degrees in 100 m
+  // 18 degrees in 100 m bend a patch of 6 m by 1.1 degrees within itself, which moving does not
+  // undo.
+  EXPECT_LT(thickening(0.0032, 2.0), 1.1);
+  EXPECT_LT(thickening(0.0032, 6.0), 1.25);
 }
 
 TEST(OccupancyPatches, APoseThatTheMapNoLongerHasLeavesItsPatchOut) {
@@ -238,16 +401,17 @@ TEST(OccupancyPatches, FurtherReadingsOfADriveAreTempered) {
   const HallDrive drive = hall_drive(8);
   auto built = patches_of(drive);
   const OccupancyGrid whole = place_patches(built.patches, poses_of(drive), {});
-  const OccupancyGrid fifth = place_patches(built.patches, poses_of(drive), {{"hall", 0.2}});
+  const OccupancyGrid fifth = place_patches(built.patches, poses_of(drive), {{"hall", {0.2}}});
   auto twice = built.patches;
   for (OccupancyPatch patch : built.patches) {
     patch.drive = "again";
     twice.push_back(patch);
   }
-  const OccupancyGrid both = place_patches(twice, poses_of(drive), {{"hall", 0.2}, {"again", 0.2}});
+  const OccupancyGrid both =
+      place_patches(twice, poses_of(drive), {{"hall", {0.2}}, {"again", {0.2}}});
   for (std::size_t i = 0; i < whole.seen.size(); ++i) {
     const double n = whole.seen[i];
-    if (n == 0.0) continue;
+    if (n == 0.0 || is_at_edge(whole, i)) continue;
     ASSERT_NEAR(fifth.effective[i], 1.0 + 0.2 * (n - 1.0), 1e-3);
     ASSERT_NEAR(fifth.change[i], whole.change[i] * (1.0 + 0.2 * (n - 1.0)) / n, 1e-3);
     ASSERT_NEAR(both.change[i], 2.0F * fifth.change[i], 1e-3);
