@@ -112,6 +112,13 @@ void place_moved_patches(benchmark::State& state) {
     p.log_odds.assign(40000, -500);
     p.seen.assign(40000, 5);
     p.hits.assign(40000, 0);
+    p.ends.assign(40000, 0);
+    // A twentieth of the cells holds a surface.
+    for (std::size_t c = i % 20; c < 40000; c += 20) {
+      p.log_odds[c] = 2000;
+      p.hits[c] = 3;
+      p.ends[c] = packed_end({0.2, -0.3});
+    }
   }
   double turn = 0.0;
   std::size_t moved = 0;

@@ -19,6 +19,10 @@ constexpr std::array<std::pair<OccupancyUpdate, const char*>, 3> kUpdates{
      {OccupancyUpdate::kBayes, "bayes"},
      {OccupancyUpdate::kNaive, "naive"}}};
 
+std::vector<std::uint16_t> ends_of(const OccupancyPatch& patch) {
+  return patch.ends.empty() ? std::vector<std::uint16_t>(patch.hits.size(), 0) : patch.ends;
+}
+
 PlainTable patch_table(const std::vector<OccupancyPatch>& patches) {
   PlainTable table;
   table.name = "occupancy_patches";
@@ -46,7 +50,7 @@ PlainTable patch_table(const std::vector<OccupancyPatch>& patches) {
          p.vehicle_patch.heading_rad, p.placed.x_m, p.placed.y_m, p.placed.heading_rad, p.cell_m,
          std::int64_t{p.rows}, std::int64_t{p.columns}, packed_numbers<std::int16_t>(p.log_odds),
          packed_numbers<std::uint16_t>(p.seen), packed_numbers<std::uint16_t>(p.hits),
-         packed_numbers<std::uint16_t>(p.ends)});
+         packed_numbers<std::uint16_t>(ends_of(p))});
   return table;
 }
 

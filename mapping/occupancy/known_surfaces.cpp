@@ -81,7 +81,7 @@ ConeLimits::ConeLimits(const KnownSurfaces& known,
                        double cone_rad,
                        double read_m)
     : origin_(origin), along_(along), half_rad_(0.5 * cone_rad) {
-  const int steps = std::max(0, static_cast<int>(std::ceil(cone_rad * read_m / shape.cell_m)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(cone_rad * read_m / shape.cell_m)));
   step_rad_ = cone_rad / steps;
   for (int i = 0; i <= steps; ++i) {
     const Eigen::Vector2d ray = Eigen::Rotation2Dd(i * step_rad_ - half_rad_) * along;

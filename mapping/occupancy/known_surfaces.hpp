@@ -14,8 +14,9 @@ namespace roadbook {
 ///
 /// Echoes lie some decimetres apart on a surface that is far away. Therefore a surface is known
 /// around each cell with an echo, up to `kBetweenEchoes_m`, if at least two echoes lie there and
-/// the cells that hold them are occupied together: with passed readings, as of a person who went
-/// on, they are not.
+/// the cells that hold them are occupied together: where later readings passed, as of a person who
+/// went on, they are less so. The price: posts less than a metre apart hide the ground behind them,
+/// as a wall does.
 class KnownSurfaces {
  public:
   static constexpr double kBetweenEchoes_m = 0.2;

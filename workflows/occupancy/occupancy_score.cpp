@@ -65,7 +65,7 @@ OccupancyFigures occupancy_figures(const StoredOccupancy& stored, const Occupanc
   std::size_t bytes = 0;
   for (const OccupancyPatch& p : stored.patches)
     bytes += packed_numbers(p.log_odds).size() + packed_numbers(p.seen).size() +
-             packed_numbers(p.hits).size();
+             packed_numbers(p.hits).size() + packed_numbers(p.ends).size();
   const auto cells = static_cast<double>(figures.cells);
   figures.bytes_per_m2 =
       static_cast<double>(bytes) / (cells * grid.shape.cell_m * grid.shape.cell_m);

@@ -69,14 +69,15 @@ void study_wide_beams(const SimulatedScans& drive,
   write_grid_pictures(out / "wide.png", grids, 3);
 }
 
-// Three people cross the lane while the car drives by: what they leave in the grid.
+// People cross the lane while the car drives by, with Gaussian noise: what they leave in the
+// grid.
 void study_people(const SimulatedScansOptions& simulated,
                   const std::filesystem::path& out,
                   const Progress& progress,
                   std::vector<OccupancyCase>& cases) {
   SimulatedScansOptions visit = simulated;
   visit.place = "zurich";
-  visit.size = "full";
+  visit.effects.clear();
   visit.visit = 1;
   const SimulatedScans crossed = simulate_scans(out / "drive_people", visit, progress);
   const RuleOptions rules{.max_m = crossed.max_m};

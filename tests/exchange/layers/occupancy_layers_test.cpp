@@ -100,6 +100,30 @@ TEST(OccupancyLayers, GridsWithoutEndsAreRead) {
   EXPECT_EQ(patch.hits, hall.stored.patches[0].hits);
   EXPECT_TRUE(patch.ends.empty());
   EXPECT_EQ(patch.end_in(3, 2, 7), Eigen::Vector2d(3.5, 2.5));
+  // Written by this version beside a patch with ends, it is read again.
+  StoredOccupancy both = *read;
+  both.patches.push_back(hall.stored.patches[1]);
+  MapUpdate again(hall.map);
+  write_occupancy_layers(again, both, hall.grid);
+  again.commit();
+  const auto mixed = read_occupancy_layers(MapLayers(hall.map));
+  ASSERT_TRUE(mixed);
+  EXPECT_EQ(mixed->patches[0].end_in(3, 2, 7), Eigen::Vector2d(3.5, 2.5));
+  EXPECT_EQ(mixed->patches.back().ends, hall.stored.patches[1].ends);
+}
+
+TEST(OccupancyLayers, FewSightsOfCamerasCountAndFewRaysDoNot) {
+  StoredOccupancy stored;
+  stored.drives.resize(2);
+  stored.drives[0].drive = "by cameras";
+  stored.drives[0].sensor = "cameras";
+  stored.drives[0].temper = 0.5;
+  stored.drives[1].drive = "by scanner";
+  stored.drives[1].sensor = "range0";
+  const auto weights = stored.reading_weights();
+  EXPECT_TRUE(weights.at("by cameras").few_count);
+  EXPECT_EQ(weights.at("by cameras").temper, 0.5);
+  EXPECT_FALSE(weights.at("by scanner").few_count);
 }
 
 TEST(OccupancyLayers, RastersHoldTheGridAndNothingWhereNoReadingCame) {
