@@ -116,6 +116,10 @@ class Study:
             bad = [m for m in self.state["mutants"] if any(
                 path.endswith("/" + m["file"]) and self.lines(m)[0] <= int(line) <= self.lines(m)[1]
                 for path, line in places)]
+            if not bad:  # a default value that is refused where a constant takes it
+                files = re.findall(r"([\w/.]+\.cpp):\d+:\d+: error", said)
+                bad = [m for m in self.state["mutants"]
+                       if any(path.endswith("/" + m["file"]) for path in files)]
             if not bad:
                 sys.exit(f"{said}\nerror: the copy does not build")
             self.state["mutants"] = [m for m in self.state["mutants"] if m not in bad]
