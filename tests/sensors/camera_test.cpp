@@ -133,5 +133,17 @@ TEST(Camera, AnImageOfHalfTheSizeShowsTheSameRays) {
   }
 }
 
+// Where the view of a lens is straight ahead, a small angle times the focal length is its pixels.
+TEST(Camera, TheFocalLengthIsPixelsByAngleInTheMiddleOfTheView) {
+  constexpr double kAngle_rad = 1e-5;
+  for (const Camera& camera : cameras()) {
+    SCOPED_TRACE(camera_model_name(camera.model));
+    const double pixels =
+        (*camera.project(ray(kAngle_rad, 0.0)) - *camera.project(ray(0.0, 0.0))).norm();
+    // The focal lengths of columns and rows differ by up to 0.3 %.
+    EXPECT_NEAR(camera.focal_px() * kAngle_rad, pixels, 0.003 * pixels);
+  }
+}
+
 }  // namespace
 }  // namespace roadbook

@@ -44,6 +44,10 @@ TEST(WheelOdometry, IsEmptyOutsideTheStreamAndOverAGap) {
   EXPECT_FALSE(odometry.between(0, 10'020'000'000));
   EXPECT_FALSE(odometry.between(1'000'000'000, 5'000'000'000));
   EXPECT_TRUE(odometry.between(4'000'000'000, 5'000'000'000));
+  // From or to a time within the gap of 1.98 to 3 s.
+  EXPECT_FALSE(odometry.between(1'000'000'000, 2'500'000'000));
+  EXPECT_FALSE(odometry.between(2'500'000'000, 4'000'000'000));
+  EXPECT_TRUE(odometry.between(1'000'000'000, 1'980'000'000));
 }
 
 // Sum of 200 normalised squared errors of 3 degrees of freedom: chi-square of 600, 95 % band
