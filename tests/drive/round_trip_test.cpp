@@ -5,6 +5,7 @@
 
 #include "drive/detections.hpp"
 #include "drive/images/png_grey.hpp"
+#include "drive/sensor_yaml.hpp"
 #include "tests/drive/drive_fixture.hpp"
 #include "tests/support/real_data.hpp"
 
@@ -262,6 +263,24 @@ TEST(DriveRoundTrip, ADriveWithoutCamerasOpens) {
   const Drive drive = Drive::open(d);
   EXPECT_EQ(drive.frame_count(), 0u);
   EXPECT_EQ(drive.wheel_readings().size(), std::size_t{4 * kFrames});
+}
+
+TEST(SensorYaml, ACommentStaysAsItIsOnOneLine) {
+  const TemporaryFolder folder;
+  MountedCamera camera;
+  camera.camera.width = 640;
+  camera.camera.height = 480;
+  camera.camera.parameters = {500.0, 500.0, 320.0, 240.0};
+  const auto written = [&](const std::string& comment) {
+    write_text(folder.path() / "sensor.yaml", camera_yaml_text(camera, {comment, 20.0}));
+    ProblemList problems;
+    const auto file = read_camera_yaml(folder.path() / "sensor.yaml", "cam0", 64.0, problems);
+    EXPECT_TRUE(file && problems.problems().empty());
+    return file ? file->info.comment : "";
+  };
+  const std::string comment = "front \"left\" \\ G\xC3\xA4rtringen #2";
+  EXPECT_EQ(written(comment), comment);
+  EXPECT_EQ(written("two\nlines\tof text"), "two lines of text");
 }
 
 }  // namespace

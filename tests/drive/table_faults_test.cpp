@@ -128,5 +128,12 @@ TEST(TableFaults, RandomLinesAreReadWithoutHarm) {
   }
 }
 
+TEST(TableFaults, CarriageReturnsAreAFaultOnlyWhereTheyAloneEndLines) {
+  EXPECT_EQ(encoding_fault("1,2\r3,4\r"), "line ends of CR alone");
+  EXPECT_EQ(encoding_fault("1,2"), "");
+  EXPECT_EQ(encoding_fault("1,2\r"), "");  // CR LF, split at LF
+  EXPECT_EQ(encoding_fault("1,2\r\r"), "");
+}
+
 }  // namespace
 }  // namespace roadbook::test
