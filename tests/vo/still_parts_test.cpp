@@ -112,6 +112,17 @@ TEST(StillParts, SkyAndBareRoadAreNotTheCar) {
     }
 }
 
+// A mirror or a sign above the horizon: only what reaches the edge of the view can be of the car.
+TEST(StillParts, AboveTheHorizonTheCarReachesTheEdgeOfTheView) {
+  for (const int top : {0, 30}) {
+    std::vector<cv::Mat> images = images_of({.bonnet = false});
+    for (cv::Mat& image : images) image(cv::Rect(140, top, 40, 30)) = 20;
+    const cv::Mat found = find_still_parts(images, level_camera());
+    const bool is_found = !found.empty() && found.at<std::uint8_t>(top + 29, 160) != 0;
+    EXPECT_EQ(is_found, top == 0);
+  }
+}
+
 TEST(StillParts, ACarThatStandsTellsNothing) {
   EXPECT_TRUE(find_still_parts(images_of({.moves = false}), level_camera()).empty());
   EXPECT_TRUE(find_still_parts({}, level_camera()).empty());

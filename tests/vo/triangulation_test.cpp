@@ -57,5 +57,18 @@ TEST(Triangulate, DepthErrorFollowsTheClosedForm) {
   EXPECT_NEAR(std::sqrt(squares / kTrials), predicted, 0.05 * predicted);
 }
 
+// Two rays that pass each other at h: each is missed by the same angle, so the point divides h by
+// the squares of the ranges.
+TEST(Triangulate, ANearRayCountsMoreThanAFarOne) {
+  constexpr double kFar = 10.0;
+  constexpr double kNear = 2.0;
+  constexpr double kApart = 0.01;
+  const std::vector<Ray> rays{{{-kFar, 0, 0}, {1, 0, 0}}, {{0, -kNear, kApart}, {0, 1, 0}}};
+  const auto found = triangulate(rays, 0.01);
+  ASSERT_TRUE(found);
+  const double height = kApart * kFar * kFar / (kFar * kFar + kNear * kNear);
+  EXPECT_LT((found->p_world - Eigen::Vector3d(0.0, 0.0, height)).norm(), 1e-6);
+}
+
 }  // namespace
 }  // namespace roadbook

@@ -89,5 +89,24 @@ TEST(CompareWheels, WhatIsWrongThroughoutLeavesTheWheelsOut) {
   EXPECT_TRUE(half.doubts_all());
 }
 
+// The wheels roll for 4 s in frames of 0.1 s. The cameras know the motion but from 1 to 2 s.
+TEST(KnownShare, IsTheTimeWithoutTheGapsOfTheCameras) {
+  const WheelModel model;
+  const WheelOdometry wheels(model, readings_of(model));
+  std::vector<std::int64_t> frames_ns;
+  VoResult sight;
+  for (int i = 0; i <= 40; ++i) {
+    frames_ns.push_back(std::int64_t{i} * 100'000'000);
+    if (i > 10 && i < 20) continue;
+    VoKeyframe keyframe;
+    keyframe.t_ns = frames_ns.back();
+    keyframe.inliers = 200;
+    keyframe.after_gap = i == 20;
+    sight.keyframes.push_back(keyframe);
+  }
+  EXPECT_NEAR(known_share(sight, wheels, frames_ns), 0.75, 1e-9);
+  EXPECT_EQ(known_share({}, wheels, frames_ns), 0.0);
+}
+
 }  // namespace
 }  // namespace roadbook::test
