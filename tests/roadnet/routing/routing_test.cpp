@@ -71,6 +71,21 @@ TEST(Routing, TakesTheShorterWayRound) {
   EXPECT_NEAR(length, route.length_m, 1e-9);
 }
 
+TEST(Routing, TheLineOfARouteHasTheBendsBetweenItsEndsAndNoOthers) {
+  RoadNetwork network = square(1);
+  network.lanes[0].centre = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {20, 10, 0}};
+  const auto expect_line = [&](const RouteLeg& leg, const std::vector<Eigen::Vector3d>& points) {
+    Route route;
+    route.legs = {leg};
+    const auto line = route_line(network, route);
+    ASSERT_EQ(line.size(), points.size());
+    for (std::size_t i = 0; i < line.size(); ++i) EXPECT_LT((line[i] - points[i]).norm(), 1e-12);
+  };
+  expect_line({.lane = 0, .from_s_m = 5.0, .to_s_m = 15.0}, {{5, 0, 0}, {10, 0, 0}, {10, 5, 0}});
+  expect_line({.lane = 0, .along = false, .from_s_m = 25.0, .to_s_m = 5.0},
+              {{15, 10, 0}, {10, 10, 0}, {10, 0, 0}, {5, 0, 0}});
+}
+
 TEST(Routing, OneWayLanesAreDrivenOnlyTheirWay) {
   const RoadNetwork network = square(0);
   const Router router(network);
