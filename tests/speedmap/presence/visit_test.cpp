@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <tuple>
+#include <utility>
 
 #include "base/error.hpp"
 #include "speedmap/presence/map_ages.hpp"
@@ -46,6 +49,21 @@ double presence_after(const PresenceGrid& grid,
   for (int k = 0; k < visits; ++k) map.add(observations_of(grid, evidence, frames, sight));
   map.solve();
   return map.presence()[grid.node_at(at).value()];
+}
+
+TEST(Visit, EveryTwoCellsWithACommonSideAreJoinedOnce) {
+  const PresenceGrid grid = small_place();
+  std::set<std::pair<int, int>> joined;
+  for (const PresenceEdge& edge : grid.graph().edges) {
+    const auto centre = [&](int node) { return grid.centres()[static_cast<std::size_t>(node)]; };
+    EXPECT_NEAR((centre(edge.a) - centre(edge.b)).norm(), grid.options().cell_m, 1e-9);
+    EXPECT_TRUE(joined.insert(std::minmax(edge.a, edge.b)).second);
+  }
+  std::size_t sides = 0;
+  for (const Eigen::Vector2d& centre : grid.centres())
+    for (const Eigen::Vector2d& step : {Eigen::Vector2d(0.5, 0.0), Eigen::Vector2d(0.0, 0.5)})
+      sides += grid.node_at(centre + step).has_value() ? 1U : 0U;
+  EXPECT_EQ(joined.size(), sides);
 }
 
 TEST(Visit, PlacesHaveTheClassOfTheirLabels) {
