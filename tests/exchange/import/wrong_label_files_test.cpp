@@ -90,6 +90,8 @@ TEST_F(WrongLabelFiles, CocoFieldsOfAnotherKindAreNotPassedOver) {
   EXPECT_SAYS(with(R"("segmentation":7)"), where + "segmentation: got 7, want a polygon");
   EXPECT_SAYS(with(R"("segmentation":true)"), where + "segmentation: got true, want a polygon");
   EXPECT_SAYS(with(R"("segmentation":{"counts":"x"})"), "got a run-length mask, want a polygon");
+  EXPECT_SAYS(with(R"("segmentation":[[1,1,"2",1,2,2]])"),
+              where + "segmentation: got no numbers, want one list of numbers");
   EXPECT_SAYS(with(R"("attributes":[1])"), where + "attributes: got [1], want an object");
   EXPECT_SAYS(with(R"("attributes":{"note":5})"), where + "attributes.note: got 5, want text");
   EXPECT_SAYS(with(R"("attributes":{"shape":"bxo"})"),
