@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -7,6 +8,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/files/lock_holder.hpp"
 #include "mapping/store/map_event_log.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
@@ -67,6 +69,27 @@ TEST(MapHold, KeepsOthersAwayAndNamesTheProcessThatHoldsTheMap) {
   hold.reset();
   EXPECT_EQ(refusal_elsewhere([&] { MapUpdate update(path); }), "");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg.part"));
+}
+
+// Another program may lock bytes of its own in the file. The message does not blame it.
+TEST(MapHold, OnlyLocksOnTheBytesOfSqliteNameTheirProcess) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  std::ofstream(path) << "text";
+  const auto holder_of_lock_at = [&](off_t byte) {
+    const int file = open(path.c_str(), O_RDWR | O_CLOEXEC);
+    struct flock lock {};
+    lock.l_type = F_WRLCK;
+    lock.l_whence = SEEK_SET;
+    lock.l_start = byte;
+    lock.l_len = 1;
+    EXPECT_EQ(fcntl(file, F_SETLK, &lock), 0);
+    const std::string holder = lock_holder(path);
+    close(file);
+    return holder;
+  };
+  EXPECT_EQ(holder_of_lock_at(0), "another process");
+  EXPECT_EQ(holder_of_lock_at(0x40000000).rfind("process " + std::to_string(getpid()), 0), 0U);
 }
 
 // A workflow takes the hold; the functions that it calls change the map one after another.

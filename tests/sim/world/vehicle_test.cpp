@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "base/se3.hpp"
 #include "sensors/wheels.hpp"
@@ -150,6 +152,26 @@ TEST(Vehicle, StandsOnBothSidesOfAHinge) {
   const Eigen::Isometry3d astride = ground.stand(0.0, 0.0, 0.0, 2.6, 1.5);
   EXPECT_NEAR(astride.linear()(2, 2), 1.0, 1e-12);
   EXPECT_NEAR(astride.translation().z(), 0.75 * 0.035, 1e-12);
+}
+
+// Pure pursuit steers so that the arc to a point ahead is driven; on a circle that arc is the
+// circle, whatever the distance of the point.
+TEST(Vehicle, FollowsACircleWithoutCuttingIt) {
+  constexpr double kRadius_m = 12.0;
+  std::vector<Eigen::Vector2d> corners;
+  for (int i = 0; i < 90; ++i) {
+    const double a = i * std::numbers::pi / 45.0;
+    corners.emplace_back(kRadius_m * std::cos(a), kRadius_m * std::sin(a));
+  }
+  Random random(5, "driver");
+  const VehicleMotion motion =
+      drive_line(DrivingLine(corners, 1.0, true), 2, {}, small("zurich").vehicle,
+                 Ground(GroundSpec{}), {.wander = false}, random);
+  const double half_s = 0.5 * motion.states().back().t_s;
+  for (const VehicleState& state : motion.states())
+    if (std::abs(state.t_s - half_s) < 0.25 * half_s) {
+      EXPECT_NEAR(std::hypot(state.x, state.y), kRadius_m, 0.03) << state.t_s;
+    }
 }
 
 }  // namespace
