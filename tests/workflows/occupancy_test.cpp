@@ -189,6 +189,21 @@ TEST(OccupancyScore, CountsCellsAsWorkedByHand) {
   EXPECT_NEAR(score.calibration_error, (2.0 * (0.5 - p) + p) / 3.0, 1e-6);
 }
 
+// Two of three free cells had echoes at least twice: something moved away.
+TEST(OccupancyScore, FreeCellsWithEchoesAreCountedAsMovingThings) {
+  OccupancyGrid grid;
+  grid.shape = CellShape{{0.0, 0.0}, 1.0, 5, 1};
+  grid.change = {-9.0F, 9.0F, -9.0F, -9.0F, 0.0F};
+  grid.seen = {5, 5, 9, 9, 0};
+  grid.hits = {1, 5, 2, 3, 0};
+  grid.effective = {9.0F, 9.0F, 9.0F, 9.0F, 0.0F};
+  const OccupancyFigures figures = occupancy_figures({}, grid);
+  EXPECT_EQ(figures.cells, 4U);
+  EXPECT_EQ(figures.free, 3U);
+  EXPECT_EQ(figures.occupied, 1U);
+  EXPECT_DOUBLE_EQ(figures.vanished_share, 2.0 / 3.0);
+}
+
 TEST(BeamModelFile, ReadsWhatItWritesAndRefusesSharesAboveOne) {
   const Folder folder;
   const RangeMixture m = mixture_of({0.1, 0.05, 0.02, 0.7}, 0.04);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "apps/report/label_section.hpp"
 #include "apps/report/page.hpp"
 #include "exchange/layers/occupancy_layers.hpp"
 #include "mapping/store/map_file_builder.hpp"
@@ -157,6 +158,22 @@ void write_two_cells(const std::filesystem::path& map) {
   update.commit();
 }
 
+// Each landmark of the map is seen once.
+TEST_F(Report, LandmarksSeenInOneImageHaveABarOfTheirHistogram) {
+  const std::string page = report_page(collect_report(map_));
+  const std::size_t name = page.find("images that see a landmark");
+  ASSERT_NE(name, std::string::npos);
+  const std::size_t begin = page.rfind("<svg", name);
+  const std::string svg = page.substr(begin, page.find("</svg>", name) - begin);
+  const std::regex bar("<rect class=\"bar\"[^>]*height=\"([0-9.]+)\"");
+  std::vector<double> heights;
+  for (auto it = std::sregex_iterator(svg.begin(), svg.end(), bar); it != std::sregex_iterator();
+       ++it)
+    heights.push_back(std::stod((*it)[1]));
+  ASSERT_EQ(heights.size(), 10U);
+  for (std::size_t i = 0; i < heights.size(); ++i) EXPECT_EQ(heights[i] > 0.0, i == 1) << i;
+}
+
 TEST_F(Report, ScoresTheGridAgainstTheSevenDemands) {
   EXPECT_EQ(report_page(collect_report(map_)).find("Free space"), std::string::npos);
   write_two_cells(map_);
@@ -201,6 +218,27 @@ TEST_F(Report, CannotBeWrittenWhereThereIsNoFolder) {
       test::run_command("roadbook report -m place.gpkg -o none/r.html", folder_.path());
   EXPECT_EQ(result.status, 3) << result.err;
   EXPECT_EQ(result.err.rfind("error: none/r.html", 0), 0U) << result.err;
+}
+
+TEST(LabelSection, CountsTheLabelsThatWereLookedForByWhatWasFound) {
+  LabelReport report;
+  report.shifts.shifts.resize(1);
+  report.outlines.resize(1);
+  report.outlines_before.resize(1);
+  for (const auto& [status, count] : {std::pair{EvidenceStatus::kFound, 4},
+                                      {EvidenceStatus::kGone, 1},
+                                      {EvidenceStatus::kCovered, 2},
+                                      {EvidenceStatus::kUnseen, 3}})
+    for (int i = 0; i < count; ++i) {
+      LabelEvidence& one = report.evidence.emplace_back();
+      one.id = static_cast<std::int64_t>(report.evidence.size());
+      one.status = status;
+    }
+  const std::string html = label_section(report, {});
+  EXPECT_NE(html.find("4 found, 1 gone, 2 covered, 0 without paint, 3 in no image."),
+            std::string::npos);
+  EXPECT_NE(html.find("The paint of these labels is gone, a person should look: 5."),
+            std::string::npos);
 }
 
 }  // namespace

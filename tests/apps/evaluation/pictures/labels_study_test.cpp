@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "apps/evaluation/pictures/painted_lot.hpp"
+#include "base/error.hpp"
 #include "semantics/detector/label_oracle.hpp"
 
 namespace roadbook {
@@ -58,6 +59,14 @@ TEST(LabelCurve, TheSameClicksTeachTheSameOnAnyNumberOfThreadsAndFewerSomethingE
   }
   options.questions_a_round = 9;
   EXPECT_NE(play()[1].classifier, told[1].classifier);
+}
+
+TEST(OracleOptions, OneRoundIsEnough) {
+  OracleOptions options;
+  options.rounds = 1;
+  EXPECT_NO_THROW(options.check());
+  options.rounds = 0;
+  EXPECT_THROW(options.check(), InvalidOption);
 }
 
 // The model has learned from another floor, so one drawn box is enough where five were needed.
