@@ -51,6 +51,9 @@ std::vector<PlacedSpace> placed_spaces(const Map& map,
   return spaces;
 }
 
+// Of a space's length: from one space of a slanted row to the next, along the spaces.
+constexpr double kMostAhead = 0.6;
+
 // Whether b may be at most `max_step` spaces from a in a row: equal depth, equal direction, at its
 // side.
 bool side_by_side(const PlacedSpace& a, const PlacedSpace& b, const SpaceRowOptions& options) {
@@ -61,7 +64,7 @@ bool side_by_side(const PlacedSpace& a, const PlacedSpace& b, const SpaceRowOpti
   const double aside = std::abs(apart.dot(a.across));
   // Slanted rows advance as far ahead as to the side. The row behind lies one length ahead.
   return aside > 0.6 * a.box.width_m && aside < (options.max_step + 0.5) * a.box.width_m &&
-         std::abs(apart.dot(a.along)) < 0.6 * a.box.length_m * aside / a.box.width_m;
+         std::abs(apart.dot(a.along)) < kMostAhead * a.box.length_m * aside / a.box.width_m;
 }
 
 void find_neighbours(std::vector<PlacedSpace>& spaces, const SpaceRowOptions& options) {
@@ -70,9 +73,10 @@ void find_neighbours(std::vector<PlacedSpace>& spaces, const SpaceRowOptions& op
   const auto space = [&](int i) -> PlacedSpace& { return spaces[static_cast<std::size_t>(i)]; };
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return space(a).box.centre.x() < space(b).box.centre.x(); });
-  double reach = 0.0;
+  double reach = 0.0;  // of two spaces side by side
   for (const PlacedSpace& s : spaces)
-    reach = std::max(reach, 1.5 * (options.max_step + 0.5) * s.box.width_m);
+    reach = std::max(
+        reach, (options.max_step + 0.5) * std::hypot(s.box.width_m, kMostAhead * s.box.length_m));
   const auto distance = [&](int i, int j) {
     return j < 0 ? std::numeric_limits<double>::max()
                  : (space(i).box.centre - space(j).box.centre).norm();

@@ -93,6 +93,17 @@ TEST_F(SpaceRows, SlantedSpacesAreARow) {
   EXPECT_EQ(rows()[0].spaces.size(), 8U);
 }
 
+// Bays of coaches, with a gap of two: 19 m from one label to the next.
+TEST_F(SpaceRows, LongNarrowSpacesThatSlantMuchAreARowOverAGap) {
+  constexpr double kBayWidth = 3.0;
+  const double slant = std::atan2(1.0, 1.9);
+  const double step = kBayWidth / std::sin(slant);
+  const std::vector<int> labelled{0, 1, 2, 3, 6, 7, 8, 9};
+  for (const int i : labelled) draw({{6.0 + step * i, 9.0}, slant, 12.0, kBayWidth});
+  ASSERT_EQ(rows().size(), 1U);
+  EXPECT_EQ(steps_of(0), labelled);
+}
+
 // The error of the map grows along the row. The row must still be found, because it shall correct
 // this error.
 TEST_F(SpaceRows, ARowOfABentMapIsStillOne) {
