@@ -144,6 +144,23 @@ TEST(PropertyMap, HalfOfWhatIsKnownIsForgottenAfterAHalfLife) {
   EXPECT_GT(map.property(0)[0].alpha, 1.0);
 }
 
+TEST(PropertyMap, OnlyFiniteBeliefsAreTakenAndNoCountsOfZero) {
+  for (const auto semantics : {SemanticModel::kGeometricPool, SemanticModel::kDiscrete}) {
+    PropertyMapOptions options;
+    options.semantics = semantics;
+    options.confusion = {0.9, 0.05, 0.05, 0.05, 0.9, 0.05, 0.05, 0.05, 0.9};
+    PropertyMap map = small_map(options);
+    const bool discrete = semantics == SemanticModel::kDiscrete;
+    const std::vector<double> none = {0.0, 1.0, 1.0};  // of discrete classes: a logarithm
+    EXPECT_THROW(map.set_belief(3, std::vector<double>{1.0, NAN, 1.0}, 0.0), InvalidOption);
+    EXPECT_THROW(map.set_belief(3, std::vector<double>{1.0, INFINITY, 1.0}, 0.0), InvalidOption);
+    if (discrete)
+      EXPECT_NO_THROW(map.set_belief(3, none, 0.0));
+    else
+      EXPECT_THROW(map.set_belief(3, none, 0.0), InvalidOption);
+  }
+}
+
 TEST(PropertyMap, ASecondPropertyHasItsOwnClassesAndSharesTheLabels) {
   PropertyMapPrior prior = test::small_prior();
   PropertyPrior roughness = prior.properties[0];
@@ -225,6 +242,28 @@ TEST(PropertyMapper, AWrongAndConfidentPriorIsRepairedFromTheLog) {
   EXPECT_GT(mapper.refreshes(), 5);
   // 300 values a class with 5 % from across its border: below 0.03.
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(mapper.map().property(0)[i].mu, truth[i], 0.03);
+}
+
+// Values fit the classes, then the road changes. The refresh is due at once, not after 50 m.
+TEST(PropertyMapper, ValuesThatBecomeImprobableMakeARefreshDueEarly) {
+  PropertyMapPrior prior = test::small_prior();
+  prior.properties[0].classes = {
+      {0.6, 90.0, 90.0, 0.2}, {0.9, 90.0, 90.0, 0.2}, {0.4, 90.0, 90.0, 0.2}};
+  for (const double then : {0.9, 0.3}) {
+    RefreshOptions options;
+    options.early_until_m = 0.0;
+    PropertyMapper mapper(PropertyMap(test::small_knots(), prior), options);
+    EXPECT_TRUE(mapper.travelled(10.0));
+    Random random(4, "refresh");
+    const auto drive = [&](double mean) {
+      for (int i = 0; i < 40; ++i)
+        mapper.add_value(0, {random.uniform(0.0, 20.0), 0.0}, random.normal(mean, 0.05));
+      return mapper.travelled(20.0);
+    };
+    for (int s = 0; s <= 20; ++s) mapper.map().add_label({1.0 * s, 0.0}, 1, 50.0);
+    EXPECT_FALSE(drive(0.9));
+    EXPECT_EQ(drive(then), then != 0.9);
+  }
 }
 
 }  // namespace
