@@ -45,5 +45,20 @@ TEST(Autocorrelation, OfWhiteRowsNothingIsSaid) {
   EXPECT_TRUE(said_of(values, {}).empty());
 }
 
+TEST(CheckInnovations, AChannelNeeds40ThatAreNotVague) {
+  for (const std::size_t count : {39U, 40U}) {
+    Innovations left;
+    left.sides = 1;
+    left.of.resize(count);
+    for (std::size_t i = 0; i < count; ++i) left.values.push_back(i % 3 == 0 ? 1.0 : -0.5);
+    const std::vector<ChannelName> channels{{"steering0", "angle"}};
+    const auto checks = check_innovations(left, channels);
+    ASSERT_EQ(checks.size(), count < 40 ? 0U : 1U);
+    for (const ChannelCheck& check : checks) EXPECT_EQ(check.rows, count);
+    left.of.front().variance = kVague;
+    EXPECT_TRUE(check_innovations(left, channels).empty());
+  }
+}
+
 }  // namespace
 }  // namespace roadbook
