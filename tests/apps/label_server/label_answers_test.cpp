@@ -79,6 +79,18 @@ TEST_F(LabelServerTest, AnAnswerIsOfWhenItWasGivenFirst) {
   EXPECT_EQ(when(), store_->find(1)->t_ns) << "another answer";
 }
 
+// The check of the paint searches for these labels.
+TEST_F(LabelServerTest, GroundLabelsAreWithoutDeletedAndRejectedOnes) {
+  for (const double x : {1.25, 3.75, 6.25}) (void)service_->create(Json::parse(space(x)));
+  EXPECT_EQ(service_->ground_labels().size(), 3U);
+  (void)service_->remove(1, {{"who", "ann"}, {"version", 1}});
+  (void)service_->change(2, {{"who", "ann"}, {"version", 1}, {"kind", "not_parking_space"}});
+  const std::vector<Label> left = service_->ground_labels();
+  ASSERT_EQ(left.size(), 1U);
+  EXPECT_EQ(left[0].id, 3);
+  EXPECT_TRUE(service_->image_labels().empty());
+}
+
 TEST_F(LabelServerTest, ALabelWithoutScoreTellsNothingOfSearches) {
   const auto create = [&](double x, const char* kind, const char* source, const Json& score) {
     Json body = Json::parse(space(x));
