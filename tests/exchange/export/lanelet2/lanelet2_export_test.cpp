@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "exchange/export/export_map.hpp"
+#include "exchange/export/planner/crosswalk.hpp"
 #include "exchange/export/planner/lanelets.hpp"
 #include "roadnet/paths/path_frame.hpp"
 #include "tests/exchange/export/lanelet2/lanelet2_files.hpp"
@@ -230,6 +231,24 @@ TEST(Lanelet2Export, UnknownProfilesAreRefusedWithTheOnesThereAre) {
     FAIL();
   } catch (const InvalidOption& error) {
     EXPECT_NE(std::string(error.what()).find("lanelet2, autoware"), std::string::npos);
+  }
+}
+
+// The aisle at x = 35 runs along y, the lower side of the ring along x.
+TEST(Lanelet2Export, PedestriansWalkAcrossTheNearestLane) {
+  const test::PlannerPlace place;
+  const PlannerMap planner(place.map);
+  ExportNotes notes;
+  const auto walks = crosswalks_of(planner, lanelets_of(planner), true, notes);
+  ASSERT_EQ(walks.size(), test::crossings_of_place().size());
+  const auto walked = [](const Crosswalk& walk) {
+    return Eigen::Vector2d((walk.left[1] - walk.left[0]).head<2>().normalized());
+  };
+  EXPECT_GT(std::abs(walked(walks[0]).x()), 0.99);
+  EXPECT_GT(std::abs(walked(walks[1]).y()), 0.99);
+  for (const Crosswalk& walk : walks) {
+    EXPECT_FALSE(walk.crossed.empty());
+    EXPECT_GT((walk.right[1] - walk.right[0]).dot(walk.left[1] - walk.left[0]), 0.0);
   }
 }
 
