@@ -67,5 +67,19 @@ TEST(CalibrateDrives, RefusesWhatAStraightDriveDoesNotTell) {
   EXPECT_FALSE(refusal_of(columns, "monday"));
 }
 
+TEST(CalibrationRefusal, GivesTheIntervalsInTheUnitsOfTheUser) {
+  std::vector<CalibratedColumn> columns(2);
+  columns[0].column = {"cam1.latency", CalibrationKind::kImageDelay, 1};
+  columns[0].half_width = 0.0123;
+  columns[1].column = {"cam1.yaw", CalibrationKind::kYaw, 1};
+  columns[1].half_width = 2.0 * kDegree;
+  const auto refusal = refusal_of(columns, "monday");
+  ASSERT_TRUE(refusal);
+  const std::string line = refusal->what();
+  EXPECT_NE(line.find("got cam1.latency +- 12.3 ms, cam1.yaw +- 2.00 deg (95 %)"),
+            std::string::npos)
+      << line;
+}
+
 }  // namespace
 }  // namespace roadbook

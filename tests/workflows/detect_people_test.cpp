@@ -8,6 +8,7 @@
 #include "tests/workflows/recorded_messages.hpp"
 #include "tests/workflows/thrown_problem.hpp"
 #include "workflows/map_drives.hpp"
+#include "workflows/people/people_detect.hpp"
 
 namespace roadbook {
 namespace {
@@ -56,6 +57,13 @@ TEST(DetectPeople, StoresTheDetectionsOfTheVerb) {
   request.anew = true;  // no example is left
   EXPECT_THROW((void)detect_people(request, messages), Refused);
   EXPECT_EQ(map_digest(map.map), result.digest);
+}
+
+TEST(PeopleScore, TheErrorOfFeetIsTheirMedian) {
+  PeopleScore score;
+  EXPECT_EQ(score.median_error_m(), 0.0);
+  score.foot_error_m = {0.3, 0.1, 9.0, 0.2, 0.4};
+  EXPECT_EQ(score.median_error_m(), 0.3);
 }
 
 }  // namespace
