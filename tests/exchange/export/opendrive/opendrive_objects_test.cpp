@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <iterator>
@@ -25,6 +26,17 @@ using test::DrivenPlace;
 using test::Folder;
 using test::output_of;
 using test::sumo_lines;
+
+// A number of the first object in a file.
+double number_of_object(const std::filesystem::path& path, const std::string& name) {
+  std::ifstream file(path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto object = text.find("<object ");
+  const auto at = text.find(" " + name + "=\"", object);
+  if (object == std::string::npos || at == std::string::npos) return NAN;
+  const auto begin = at + name.size() + 3;
+  return parse_double(text.substr(begin, text.find('"', begin) - begin)).value_or(NAN);
+}
 
 // Reads the file by the standard, without SUMO: outlines and links are exact, also next to sharp
 // bends.
@@ -101,12 +113,22 @@ TEST(OpenDriveObjects, ACrossingBelongsToTheLaneOfItsOwnFloor) {
   test::Outline crossing = test::rectangle("crossings", {30.0, 1.5}, 0.0, 3.0, 6.0);
   const auto map = test::sumo_map(folder, place, {crossing}, false);
   export_map(map, "opendrive", folder / "place.xodr");
-  std::ifstream file(folder / "place.xodr");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const auto at = text.find("<object ");
-  ASSERT_NE(at, std::string::npos);
-  const auto t = text.find(" t=\"", at);
-  EXPECT_NEAR(parse_double(text.substr(t + 4, text.find('"', t + 4) - t - 4)).value(), 1.5, 0.1);
+  EXPECT_NEAR(number_of_object(folder / "place.xodr", "t"), 1.5, 0.1);
+}
+
+// No road has the space at its side: it belongs to the end of the road that is nearest.
+TEST(OpenDriveObjects, ASpaceBeyondADeadEndIsAtTheEndOfItsRoad) {
+  for (const bool behind : {false, true}) {
+    const Folder folder;
+    const DrivenPlace place = test::driven_place({test::driven_along({{0.0, 0.0}, {60.0, 0.0}})});
+    ASSERT_EQ(place.network.lanes.size(), 1U);
+    const test::Outline space =
+        test::rectangle("parking_spaces", {behind ? -12.0 : 72.0, 1.0}, 0.0, 5.0, 2.5);
+    const auto map = test::sumo_map(folder, place, {space}, false);
+    export_map(map, "opendrive", folder / "place.xodr");
+    EXPECT_NEAR(number_of_object(folder / "place.xodr", "s"), behind ? 0.0 : 60.0, 1.0);
+    EXPECT_NEAR(std::abs(number_of_object(folder / "place.xodr", "t")), 1.0, 0.1);
+  }
 }
 
 }  // namespace
