@@ -194,6 +194,25 @@ TEST(Render, RaysAreCastWhateverStandsBehindTheLast) {
   }
 }
 
+// Stones are drawn where a pixel shows less than 9 cm of the ground. Here they are all brighter
+// than the ground around them, by a quarter.
+TEST(Render, StonesAreSeenNearTheCarAndNotFarAway) {
+  Plate plate;
+  plate.world.paint.brightness.image.setTo(100);
+  plate.world.scenario.ground.roughness = 0.5;
+  plate.finish();
+  plate.world.coarse_stones = Texture(cv::Mat(4, 4, CV_8UC1, cv::Scalar(192)), true);
+  const View view = plate.view(0, false);
+  const auto& mount = plate.rig.cameras[0];
+  const auto brightness = [&](double ahead) {
+    const auto pixel =
+        mount.camera.project(mount.T_vehicle_camera.inverse() * Eigen::Vector3d(ahead, 0.0, 0.0));
+    return view.brightness.at<float>(static_cast<int>(std::lround(pixel->y())),
+                                     static_cast<int>(std::lround(pixel->x())));
+  };
+  EXPECT_NEAR(brightness(6.0) / brightness(14.5), 1.25, 0.02);
+}
+
 TEST(Render, TheSkyIsUp) {
   Plate plate;
   plate.finish();
