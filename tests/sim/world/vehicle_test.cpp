@@ -8,6 +8,7 @@
 
 #include "base/se3.hpp"
 #include "sensors/wheels.hpp"
+#include "sim/streams/range_stream.hpp"
 #include "sim/streams/sensor_streams.hpp"
 #include "sim/world/world.hpp"
 
@@ -172,6 +173,24 @@ TEST(Vehicle, FollowsACircleWithoutCuttingIt) {
     if (std::abs(state.t_s - half_s) < 0.25 * half_s) {
       EXPECT_NEAR(std::hypot(state.x, state.y), kRadius_m, 0.03) << state.t_s;
     }
+}
+
+// The scanner reads ten times a second.
+TEST(RangeStream, AScanHasEachBeamOnce) {
+  const Scenario scenario = small("zurich");
+  const VehicleMotion motion = drive(scenario, Ground(scenario.ground));
+  const RangeModel model = nominal_range_model();
+  StreamOptions options;
+  options.noise = false;
+  std::vector<RangeReading> readings;
+  simulate_ranges(bare(scenario), motion, Pedestrians(scenario, motion, 1), model, 0, 0.35, options,
+                  [&](const RangeReading& reading) { readings.push_back(reading); });
+  const std::size_t beams = model.azimuth_rad.size();
+  ASSERT_EQ(readings.size(), 4 * beams);
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    EXPECT_EQ(readings[i].beam, static_cast<std::int64_t>(i % beams));
+    EXPECT_EQ(readings[i].t_ns, static_cast<std::int64_t>(i / beams) * 100'000'000);
+  }
 }
 
 }  // namespace
