@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "mapping/cameras/camera_errors.hpp"
-#include "sensors/camera.hpp"
+#include "mapping/cameras/camera_tracks.hpp"
+#include "sensors/rig.hpp"
 #include "vo/triangulation.hpp"
 
 namespace roadbook {
