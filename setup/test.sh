@@ -5,4 +5,5 @@ cd "$(dirname "$0")/.."
 export LC_ALL=C.UTF-8
 setup/install.sh
 setup/build.sh
-exec ctest --preset release --parallel 2
+# Some tests wait (for a browser, a server, a killed program): three at once fill two cores.
+exec ctest --preset release --parallel $(($(nproc) + 1))
