@@ -99,6 +99,7 @@ void run_occupancy(Console& console, const EvaluateCommand& command) {
 Experiment occupancy_experiment() {
   return {"occupancy",
           "occupancy grids by four rules for an ideal sensor, Gaussian noise and the full mixture, "
+          "people who cross the lane, "
           "the fit of the beam model, and (--data intel_scans.csv) recorded scans; --repeats: fits "
           "for the intervals, --only: a built-in place",
           run_occupancy};

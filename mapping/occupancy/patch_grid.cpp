@@ -94,7 +94,8 @@ BeamSteps::BeamSteps(const CellShape& grid,
   const double begin = std::floor(o[a]);
   double distance = (begin + 0.5 - o[a]) * sign * per_step;
   int column = static_cast<int>(begin);
-  if (distance < 0.0) {
+  constexpr double kSame = 1e-9;  // an origin in the middle of its cell, but for rounding
+  if (distance < -kSame) {
     column += sign;
     distance += per_step;
   }
