@@ -81,6 +81,9 @@ ordered_json intel_json(const IntelStudy& s, Console& console) {
 void run_occupancy(Console& console, const EvaluateCommand& command) {
   const int draws = command.repeats > 0 ? command.repeats : command.quick ? 40 : 1000;
   ordered_json json{{"experiment", "occupancy"}, {"seed", command.seed}};
+  // First: a wrong file is said at once.
+  if (!command.data.empty())
+    json["intel"] = intel_json(study_intel(command.data, command.out), console);
   json["beam_fit"] = fit_json(study_beam_fit(command.seed, draws, command.threads), console);
   OccupancyStudyOptions options;
   options.size = command.quick ? "small" : "full";
@@ -88,8 +91,6 @@ void run_occupancy(Console& console, const EvaluateCommand& command) {
   options.seed = command.seed;
   options.num_threads = command.threads;
   json["grids"] = cases_json(study_occupancy(command.out, options, console.progress()), console);
-  if (!command.data.empty())
-    json["intel"] = intel_json(study_intel(command.data, command.out), console);
   write_whole_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
@@ -99,9 +100,8 @@ void run_occupancy(Console& console, const EvaluateCommand& command) {
 Experiment occupancy_experiment() {
   return {"occupancy",
           "occupancy grids by four rules for an ideal sensor, Gaussian noise and the full mixture, "
-          "people who cross the lane, "
-          "the fit of the beam model, and (--data intel_scans.csv) recorded scans; --repeats: fits "
-          "for the intervals, --only: a built-in place",
+          "people who cross the lane, the fit of the beam model, and (--data intel_scans.csv) "
+          "recorded scans; --repeats: fits for the intervals, --only: a built-in place",
           run_occupancy};
 }
 

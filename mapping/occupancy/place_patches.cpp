@@ -166,9 +166,9 @@ void draw_surfaces(const OccupancyPatch& patch, const OccupancyGrid& grid, const
 
 // At the edge of what was seen, rays may have passed beside the surface that ends the view: a cell
 // is a square, the surface in it a curve, and no ray through the next cell would have met it. A
-// cell there that few readings passed stays unknown: of such cells with one to three readings, up
-// to 7 % are occupied, of those with more 0.4 % (docs/results/occupancy.md). `kept`: cells where
-// few readings count.
+// cell there that few readings passed stays unknown: of such cells, 2 to 5 % are occupied, of those
+// with more readings 0.3 to 2 % (docs/results/occupancy.md). `kept`: cells where few readings
+// count.
 void forget_few_at_edge(const std::vector<char>& kept, OccupancyGrid& grid) {
   const CellShape& shape = grid.shape;
   const auto unknown = [&](int column, int row) {

@@ -54,10 +54,9 @@ struct ReadingWeight {
 
 /// Adds up the patches. A patch whose pose moved by more than a quarter of a cell, at any corner,
 /// is placed again (`OccupancyPatch::placed`); others stay where they were drawn. Patches must have
-/// one cell size. A cell beside unknown ground that one to three rays
-/// passed stays unknown. `drives`: by
-/// name. Linear in the cells of all patches: 1,000 patches of 200
-/// x 200 cells take less than a second.
+/// one cell size. A cell beside unknown ground that one to three rays passed stays unknown.
+/// `drives`: by name. Linear in the cells of all patches: 1,000 patches of 200 x 200 cells take
+/// less than a second.
 [[nodiscard]] OccupancyGrid place_patches(std::vector<OccupancyPatch>& patches,
                                           const PoseOfKeyframe& pose_of,
                                           const std::map<std::string, ReadingWeight>& drives);

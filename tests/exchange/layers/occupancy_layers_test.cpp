@@ -162,13 +162,18 @@ TEST(OccupancyLayers, DamagedPatchesAreRefused) {
   packed[packed.size() / 2] ^= 0x40U;
   EXPECT_FALSE(unpacked_numbers<std::int16_t>(packed, 3));
   const StoredHall hall;
-  PlainTable table = MapLayers(hall.map).read_table("occupancy_patches");
-  for (std::size_t f = 0; f < table.fields.size(); ++f)
-    if (table.fields[f].name == "rows") table.rows[0][f] = std::int64_t{7};
-  MapUpdate update(hall.map);
-  update.write_table(table);
-  update.commit();
-  EXPECT_THROW((void)read_occupancy_layers(MapLayers(hall.map)), BadInput);
+  const PlainTable good = MapLayers(hall.map).read_table("occupancy_patches");
+  const auto expect_refused = [&](const std::string& column, const FieldValue& value) {
+    PlainTable table = good;
+    for (std::size_t f = 0; f < table.fields.size(); ++f)
+      if (table.fields[f].name == column) table.rows[0][f] = value;
+    MapUpdate update(hall.map);
+    update.write_table(table);
+    update.commit();
+    EXPECT_THROW((void)read_occupancy_layers(MapLayers(hall.map)), BadInput) << column;
+  };
+  expect_refused("rows", std::int64_t{7});
+  expect_refused("ends", packed);
 }
 
 // What nav2_map_server makes of a grey value: loadMapFromFile in nav2_map_server/src/map_io.cpp
