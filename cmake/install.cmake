@@ -6,7 +6,8 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/roadbook)
-set(exported roadbook_opencv roadbook_libdeflate roadbook_cholmod)
+set(exported roadbook_opencv roadbook_opencv_headers roadbook_late_opencv_imgcodecs roadbook_late_opencv_videoio
+    roadbook_late_gdal roadbook_libdeflate roadbook_cholmod)
 foreach(module ${ROADBOOK_MODULES})
   if(module STREQUAL "apps" OR NOT TARGET roadbook_${module})
     continue()

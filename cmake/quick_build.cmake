@@ -68,7 +68,7 @@ endfunction()
 function(roadbook_common_headers kind)
   cmake_parse_arguments(ARG "" "" "HEADERS;DEPENDS" ${ARGN})
   add_library(roadbook_common_headers_${kind} OBJECT ${nothing})
-  target_link_libraries(roadbook_common_headers_${kind} PRIVATE Eigen3::Eigen roadbook_opencv roadbook_flags
+  target_link_libraries(roadbook_common_headers_${kind} PRIVATE Eigen3::Eigen roadbook_opencv_headers roadbook_flags
                                                                 ${ARG_DEPENDS})
   target_precompile_headers(roadbook_common_headers_${kind} PRIVATE ${common_headers} ${ARG_HEADERS})
   roadbook_optimise_less(roadbook_common_headers_${kind} ${kind})
