@@ -1,18 +1,21 @@
 #include "speedmap/presence/presence_map.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "base/error.hpp"
 
 namespace roadbook {
 
-PresenceMap::PresenceMap(PresenceGraph graph) : graph_(std::move(graph)) {
+PresenceMap::PresenceMap(PresenceGraph graph)
+    : graph_(std::move(graph)), error_bound_(std::numeric_limits<double>::infinity()) {
   prepare();
-  solve();
+  x_.resize(static_cast<Eigen::Index>(size()));
+  for (std::size_t i = 0; i < size(); ++i) x_[static_cast<Eigen::Index>(i)] = graph_.nodes[i].prior;
 }
 
 PresenceMap::PresenceMap(PresenceGraph graph, Eigen::VectorXd earlier)
-    : graph_(std::move(graph)), x_(std::move(earlier)) {
+    : graph_(std::move(graph)), x_(std::move(earlier)), error_bound_(0.0) {
   prepare();
   if (x_.size() != static_cast<Eigen::Index>(size()) || !x_.allFinite())
     throw InvalidOption("earlier", std::to_string(x_.size()) + " values",

@@ -22,7 +22,8 @@ struct PresenceUpdate {
 /// observations. Deterministic: one thread. Const members may run concurrently.
 class PresenceMap {
  public:
-  /// Starts without observations and solves for x. Throws InvalidOption.
+  /// Starts without observations, with x the priors: the first `solve`, `update` or `resume` solves
+  /// for all nodes. Throws InvalidOption.
   explicit PresenceMap(PresenceGraph graph);
   /// Starts from an earlier solution (a value for each node), without solving. Call `add`, then
   /// `resume`.
@@ -62,9 +63,16 @@ class PresenceMap {
     int node;
     double weight;
   };
+  /// The edges of each node to those after it, with weights for a diagonal of ones.
+  struct ScaledEdges {
+    std::vector<std::size_t> begin;
+    std::vector<int> later;
+    std::vector<double> weight;
+  };
   void prepare();
   void solve_by_factor();
   [[nodiscard]] bool solve_by_gradients();
+  [[nodiscard]] ScaledEdges scaled_edges(const std::vector<double>& root) const;
   [[nodiscard]] std::span<const Neighbour> neighbours(int node) const;
   [[nodiscard]] double residual(int node) const;
   [[nodiscard]] std::vector<int> window(int hops) const;
@@ -78,7 +86,7 @@ class PresenceMap {
   Eigen::VectorXd b_;
   Eigen::VectorXd x_;
   std::vector<int> touched_;
-  double error_bound_ = 0.0;
+  double error_bound_;  ///< infinite before the first solution
 };
 
 }  // namespace roadbook

@@ -81,7 +81,7 @@ double PresenceMap::border_residual(const std::vector<int>& nodes) const {
 
 PresenceUpdate PresenceMap::update(double tolerance) {
   if (!(tolerance > 0.0)) throw InvalidOption("tolerance", std::to_string(tolerance), "above 0");
-  if (touched_.empty()) return {0, error_bound_};
+  if (touched_.empty() && std::isfinite(error_bound_)) return {0, error_bound_};
   const double dominance = excess_.minCoeff();
   for (int hops = 8; error_bound_ < tolerance; hops = hops * 3 / 2) {
     const std::vector<int> nodes = window(hops);

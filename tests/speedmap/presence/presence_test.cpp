@@ -204,6 +204,7 @@ TEST(Presence, ALocalUpdateIsAsGoodAsItSaysAndTouchesLittle) {
   const int side = 200;
   PresenceMap local(square(side, 0.1, 1.0, 4.0));
   PresenceMap whole(square(side, 0.1, 1.0, 4.0));
+  local.solve();
   const double tolerance = 1e-8;
   for (const int node : {100 * side + 100, 100 * side + 102, 40 * side + 40}) {
     const std::vector<PresenceObservation> seen{{node, 1.0, 2.0}};
@@ -246,8 +247,24 @@ TEST(Presence, AMillionRandomUpdatesLeaveProbabilities) {
   EXPECT_GT(map.variances().minCoeff(), 0.0);
 }
 
+// A solution that nobody asks for costs as much as the one after the observations.
+TEST(Presence, IsSolvedWhenItIsAskedForAndNotBefore) {
+  PresenceGraph graph = square(4, 0.2, 1.0, 1.0);
+  graph.nodes[5].prior = 0.9;
+  PresenceMap map(graph);
+  EXPECT_EQ(map.presence()[5], 0.9);
+  EXPECT_EQ(map.presence()[6], 0.2);
+  PresenceMap solved(graph);
+  solved.solve();
+  EXPECT_LT(solved.presence()[5], 0.8);
+  EXPECT_EQ(map.update().solved, map.size()) << "the first time, nothing is known";
+  EXPECT_EQ(map.presence(), solved.presence());
+  EXPECT_EQ(map.update().solved, 0U);
+}
+
 TEST(Presence, BadInputIsNamedAndChangesNothing) {
   PresenceMap map(square(4, 0.2, 1.0, 1.0));
+  map.solve();
   const Eigen::VectorXd before = map.presence();
   for (const PresenceObservation& bad : std::vector<PresenceObservation>{{16, 1.0, 1.0},
                                                                          {-1, 1.0, 1.0},
