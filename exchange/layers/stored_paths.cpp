@@ -15,13 +15,14 @@ void require_paths(const MapLayers& layers) {
                              "lanes with paths: run `roadbook roads` on the map"});
 }
 
-StoredPaths load_paths(const std::filesystem::path& map) {
-  const MapLayers layers(map);
+StoredPaths load_paths(const std::filesystem::path& map) { return load_paths(MapLayers(map)); }
+
+StoredPaths load_paths(const MapLayers& layers) {
   require_paths(layers);
   StoredPaths stored;
   stored.network = read_network_layers(layers);
   stored.paths = read_path_layers(layers);
-  stored.digest = load_meta(map).digest;
+  stored.digest = load_meta(layers.file()).digest;
   const VectorLayer lines = layers.read_layer("lane_paths");
   if (!lines.features.empty()) {
     const auto& values = lines.features.front().values;

@@ -22,6 +22,7 @@ void require_paths(const MapLayers& layers);
 
 /// Network and paths of a map. Throws BadInput.
 [[nodiscard]] StoredPaths load_paths(const std::filesystem::path& map);
+[[nodiscard]] StoredPaths load_paths(const MapLayers& layers);
 
 /// A number with `decimals` decimals; never "-0.000".
 [[nodiscard]] std::string fixed_text(double value, int decimals);

@@ -1,19 +1,14 @@
 #include "mapping/layers/map_layers.hpp"
 
-#include <ogrsf_frmts.h>
-
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstdio>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "mapping/layers/map_layers_gdal.hpp"
 #include "mapping/layers/map_layers_raster.hpp"
 #include "mapping/layers/map_layers_table.hpp"
-#include "mapping/layers/map_layers_vector.hpp"
+#include "mapping/layers/stored_vector.hpp"
 #include "mapping/store/map_file_open.hpp"
 #include "mapping/store/map_file_tables.hpp"
 
@@ -38,14 +33,20 @@ std::vector<std::string> names_in(const SqlDatabase& database) {
 }  // namespace
 
 struct MapLayers::Impl {
-  explicit Impl(const std::filesystem::path& map) : database(open_verified(map)) {}
+  Impl(const std::filesystem::path& map, VerifiedPart part)
+      : verified(part),
+        database(part == VerifiedPart::kAll ? open_verified(map) : open_registries(map)) {}
+
+  void verify(const std::string& table) const {
+    if (verified == VerifiedPart::kWhatIsRead) verify_read(database, table);
+  }
 
   void require(const std::string& name, bool vector) const {
     SqlStatement found = database.prepare(
         "SELECT count(*) FROM gpkg_contents WHERE table_name = ? AND (data_type = 'features') = ? "
         "AND data_type != 'attributes'");
     found.bind_text(1, name).bind(2, vector ? 1 : 0);
-    if (found.step() && found.integer(0) == 1) return;
+    if (found.step() && found.integer(0) == 1) return verify(name);
     std::vector<std::string> names;
     SqlStatement rows = database.prepare(
         "SELECT table_name FROM gpkg_contents WHERE (data_type = 'features') = ? AND data_type != "
@@ -57,10 +58,12 @@ struct MapLayers::Impl {
                            nearest ? *nearest : "a layer of this map"});
   }
 
+  VerifiedPart verified;
   SqlDatabase database;
 };
 
-MapLayers::MapLayers(const std::filesystem::path& map) : impl_(std::make_unique<Impl>(map)) {}
+MapLayers::MapLayers(const std::filesystem::path& map, VerifiedPart verified)
+    : impl_(std::make_unique<Impl>(map, verified)) {}
 MapLayers::MapLayers(MapLayers&&) noexcept = default;
 MapLayers& MapLayers::operator=(MapLayers&&) noexcept = default;
 MapLayers::~MapLayers() = default;
@@ -87,14 +90,12 @@ bool MapLayers::has(const std::string& name) const {
 std::vector<std::string> MapLayers::all_names() const { return names_in(impl_->database); }
 
 std::vector<std::string> layer_names(const std::filesystem::path& map) {
-  return names_in(open_map_file(map));
+  return names_in(open_registries(map));
 }
 
 VectorLayer MapLayers::read_layer(const std::string& name) const {
   impl_->require(name, kVector);
-  const GdalScope scope;
-  const GdalDataset dataset = open_geopackage(scope, file(), false);
-  return read_vector_layer(*dataset, name);
+  return read_stored_vector(impl_->database, name);
 }
 
 RasterInfo MapLayers::raster_info(const std::string& name) const {
@@ -108,6 +109,7 @@ cv::Mat MapLayers::read_raster(const std::string& name, const RasterWindow& wind
 }
 
 PlainTable MapLayers::read_table(const std::string& name) const {
+  impl_->verify(name);
   return read_plain_table(impl_->database, name);
 }
 

@@ -13,10 +13,17 @@ namespace roadbook {
 // Layers of a map that GIS programs open as they are, without SQL: vector layers, rasters, and
 // plain tables. Coordinates are the map frame's, in an engineering coordinate system.
 
-/// Reads layers and tables of a finished map. Opening verifies the file as `load_map` does.
+/// What a reader of layers compares with the digests that the map holds.
+enum class VerifiedPart {
+  kAll,         ///< the whole file when it is opened, as `load_map`
+  kWhatIsRead,  ///< the list of tables when it is opened, each table before it is read: quick
+};
+
+/// Reads layers and tables of a finished map. Throws BadInput, here or when a layer is read, for
+/// damage in the part that is verified.
 class MapLayers {
  public:
-  explicit MapLayers(const std::filesystem::path& map);
+  explicit MapLayers(const std::filesystem::path& map, VerifiedPart verified = VerifiedPart::kAll);
   MapLayers(MapLayers&&) noexcept;
   MapLayers& operator=(MapLayers&&) noexcept;
   ~MapLayers();
@@ -42,7 +49,7 @@ class MapLayers {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Names as of `MapLayers::all_names`. Quick: digests are not checked.
+/// Names as of `MapLayers::all_names`. Quick: no layer is read.
 [[nodiscard]] std::vector<std::string> layer_names(const std::filesystem::path& map);
 
 }  // namespace roadbook

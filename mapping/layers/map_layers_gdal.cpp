@@ -61,19 +61,11 @@ GdalDataset create_geopackage(const GdalScope& scope, const std::filesystem::pat
   return dataset;
 }
 
-GdalDataset open_geopackage(const GdalScope& scope,
-                            const std::filesystem::path& file,
-                            bool update) {
+GdalDataset open_geopackage(const GdalScope& scope, const std::filesystem::path& file) {
   const std::array<const char*, 2> drivers{"GPKG", nullptr};
-  const unsigned int flags =
-      GDAL_OF_VECTOR | GDAL_OF_RASTER | (update ? GDAL_OF_UPDATE : GDAL_OF_READONLY);
-  GdalDataset dataset(GDALDataset::Open(file.c_str(), flags, drivers.data()));
-  if (update) {
-    scope.require(dataset != nullptr, file, "open");
-  } else if (dataset == nullptr) {
-    throw BadInput(Problem{Severity::kError, file.string(), 0, "layers", scope.fault(),
-                           "a readable GeoPackage"});
-  }
+  GdalDataset dataset(GDALDataset::Open(
+      file.c_str(), GDAL_OF_VECTOR | GDAL_OF_RASTER | GDAL_OF_UPDATE, drivers.data()));
+  scope.require(dataset != nullptr, file, "open");
   return dataset;
 }
 

@@ -38,9 +38,8 @@ using GdalDataset = std::unique_ptr<GDALDataset, GdalClose>;
 /// An empty GeoPackage. Throws StorageError.
 [[nodiscard]] GdalDataset create_geopackage(const GdalScope& scope,
                                             const std::filesystem::path& file);
-/// Opens for vectors and rasters. Throws StorageError where `update`, otherwise BadInput.
+/// Opens for changes of vectors and rasters. Throws StorageError.
 [[nodiscard]] GdalDataset open_geopackage(const GdalScope& scope,
-                                          const std::filesystem::path& file,
-                                          bool update);
+                                          const std::filesystem::path& file);
 
 }  // namespace roadbook

@@ -88,37 +88,6 @@ void set_value(OGRFeature& feature, int field, const FieldValue& value) {
   }
 }
 
-FieldValue get_value(const OGRFeature& feature, int field, FieldType type) {
-  if (!feature.IsFieldSetAndNotNull(field)) return std::monostate{};
-  if (type == FieldType::kInteger)
-    return static_cast<std::int64_t>(feature.GetFieldAsInteger64(field));
-  if (type == FieldType::kReal) return feature.GetFieldAsDouble(field);
-  if (type == FieldType::kText) return std::string(feature.GetFieldAsString(field));
-  int size = 0;
-  const GByte* data = feature.GetFieldAsBinary(field, &size);
-  return Bytes(data, data + size);
-}
-
-void append_points(const OGRSimpleCurve& curve, std::vector<Eigen::Vector4d>& points) {
-  for (int i = 0; i < curve.getNumPoints(); ++i)
-    points.emplace_back(curve.getX(i), curve.getY(i), curve.getZ(i), 0.0);
-}
-
-std::vector<Eigen::Vector4d> from_geometry(const OGRGeometry* geometry) {
-  std::vector<Eigen::Vector4d> points;
-  if (geometry == nullptr) return points;
-  const OGRwkbGeometryType flat = wkbFlatten(geometry->getGeometryType());
-  if (flat == wkbPoint) {
-    const OGRPoint* p = geometry->toPoint();
-    points.emplace_back(p->getX(), p->getY(), p->getZ(), p->IsMeasured() ? p->getM() : 0.0);
-  } else if (flat == wkbLineString) {
-    append_points(*geometry->toLineString(), points);
-  } else if (flat == wkbPolygon && geometry->toPolygon()->getExteriorRing() != nullptr) {
-    append_points(*geometry->toPolygon()->getExteriorRing(), points);
-  }
-  return points;
-}
-
 void write_features(const GdalScope& scope,
                     const std::filesystem::path& file,
                     OGRLayer& target,
@@ -133,37 +102,6 @@ void write_features(const GdalScope& scope,
       set_value(row, static_cast<int>(i), feature.values[i]);
     scope.require(target.CreateFeature(&row) == OGRERR_NONE, file, layer.name);
   }
-}
-
-VectorLayer describe(GDALDataset& dataset, OGRLayer& source) {
-  const auto refuse = [&](const std::string& got) {
-    const std::string field = std::string("layer ") + source.GetName();
-    throw BadInput(Problem{Severity::kError, dataset.GetDescription(), 0, field, got,
-                           "a type that roadbook writes"});
-  };
-  VectorLayer layer;
-  layer.name = source.GetName();
-  const char* description = source.GetMetadataItem("DESCRIPTION");
-  if (description != nullptr) layer.description = description;
-  bool known = false;
-  for (const GeometryName& g : kGeometries)
-    if (g.ogr == source.GetGeomType()) {
-      layer.type = g.type;
-      known = true;
-    }
-  if (!known) refuse(OGRGeometryTypeToName(source.GetGeomType()));
-  OGRFeatureDefn& definition = *source.GetLayerDefn();
-  for (int i = 0; i < definition.GetFieldCount(); ++i) {
-    const OGRFieldDefn& field = *definition.GetFieldDefn(i);
-    known = false;
-    for (const FieldName& f : kFields)
-      if (f.ogr == field.GetType()) {
-        layer.fields.push_back({field.GetNameRef(), f.type});
-        known = true;
-      }
-    if (!known) refuse(std::string(field.GetNameRef()) + " of another type");
-  }
-  return layer;
 }
 
 }  // namespace
@@ -214,21 +152,6 @@ void write_vector_layer(const GdalScope& scope, GDALDataset& dataset, const Vect
   scope.require(dataset.StartTransaction() == OGRERR_NONE, file, layer.name);
   write_features(scope, file, *target, layer);
   scope.require(dataset.CommitTransaction() == OGRERR_NONE, file, layer.name);
-}
-
-VectorLayer read_vector_layer(GDALDataset& dataset, const std::string& name) {
-  OGRLayer* source = dataset.GetLayerByName(name.c_str());
-  ROADBOOK_ASSERT(source != nullptr);
-  VectorLayer layer = describe(dataset, *source);
-  source->ResetReading();
-  while (const OGRFeatureUniquePtr row{source->GetNextFeature()}) {
-    Feature feature;
-    feature.points = from_geometry(row->GetGeometryRef());
-    for (std::size_t i = 0; i < layer.fields.size(); ++i)
-      feature.values.push_back(get_value(*row, static_cast<int>(i), layer.fields[i].type));
-    layer.features.push_back(std::move(feature));
-  }
-  return layer;
 }
 
 }  // namespace roadbook

@@ -10,9 +10,6 @@ namespace roadbook {
 /// that is no identifier, or features that do not fit the fields.
 void write_vector_layer(const GdalScope& scope, GDALDataset& dataset, const VectorLayer& layer);
 
-/// Throws BadInput for a geometry or field type that roadbook does not write.
-[[nodiscard]] VectorLayer read_vector_layer(GDALDataset& dataset, const std::string& name);
-
 /// Gives all layers the same definition of the map frame. Files of earlier versions hold two
 /// definitions, and GIS programs refuse to combine layers of different definitions.
 void unite_map_frames(const SqlDatabase& database);

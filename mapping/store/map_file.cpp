@@ -20,7 +20,7 @@ std::vector<Session> load_sessions(const std::filesystem::path& path) {
 }
 
 MapMeta load_meta(const std::filesystem::path& path) {
-  const SqlDatabase database = open_map_file(path);
+  const SqlDatabase database = open_registries(path);
   MapMeta meta;
   constexpr std::string_view kDigest = "digest.";
   SqlStatement rows = database.prepare("SELECT key, value FROM map_meta ORDER BY id");

@@ -38,7 +38,7 @@ struct MapMeta {
 /// The sessions alone, without their cameras and wheels: quick, digests are not checked.
 [[nodiscard]] std::vector<Session> load_sessions(const std::filesystem::path& path);
 
-/// The meta table alone: quick, table digests not checked.
+/// The meta table alone, verified: quick, other tables are not read.
 [[nodiscard]] MapMeta load_meta(const std::filesystem::path& path);
 
 /// Digest over the content of all tables, computed and compared with the stored ones. The same

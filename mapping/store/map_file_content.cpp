@@ -27,8 +27,8 @@ void write_layers(const std::filesystem::path& file,
                   bool landmark_points,
                   const std::vector<VectorLayer>& more) {
   const GdalScope scope(content_time(map));
-  GdalDataset dataset = std::filesystem::exists(file) ? open_geopackage(scope, file, true)
-                                                      : create_geopackage(scope, file);
+  GdalDataset dataset =
+      std::filesystem::exists(file) ? open_geopackage(scope, file) : create_geopackage(scope, file);
   write_vector_layer(scope, *dataset, pose_layer(map));
   if (landmark_points) write_vector_layer(scope, *dataset, landmark_layer(map));
   for (const VectorLayer& layer : more) write_vector_layer(scope, *dataset, layer);

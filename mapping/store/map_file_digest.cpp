@@ -202,6 +202,22 @@ bool have_same_content(const SqlDatabase& file,
   });
 }
 
+namespace {
+
+// The digest of the content by the stored digests of the tables.
+std::string content_by_stored(const SqlDatabase& database) {
+  std::map<std::string, std::string> stored;
+  SqlStatement rows =
+      database.prepare("SELECT key, value FROM map_meta WHERE key LIKE 'digest.%' ORDER BY key");
+  while (rows.step()) stored[rows.text(0).substr(std::string("digest.").size())] = rows.text(1);
+  Sha256 content;
+  for (const auto& [name, digest] : stored)
+    if (is_content(name)) content.update(content_line(name, digest));
+  return content.update(meta_digest(database)).hex();
+}
+
+}  // namespace
+
 void renew_table_digest(const SqlDatabase& database, const std::string& table) {
   const auto write = [&](const std::string& key, const std::string& value) {
     database.prepare("UPDATE map_meta SET value = ? WHERE key = ?")
@@ -216,15 +232,7 @@ void renew_table_digest(const SqlDatabase& database, const std::string& table) {
   };
   write("digest." + table, digest_rows(database.prepare(query_of({table, false}))));
   write("schema_digest", schema_digest(database));
-  std::map<std::string, std::string> stored;
-  SqlStatement rows =
-      database.prepare("SELECT key, value FROM map_meta WHERE key LIKE 'digest.%' ORDER BY key");
-  while (rows.step()) stored[rows.text(0).substr(std::string("digest.").size())] = rows.text(1);
-  Sha256 content;
-  for (const auto& [name, digest] : stored)
-    if (is_content(name)) content.update(content_line(name, digest));
-  content.update(meta_digest(database));
-  write("digest", content.hex());
+  write("digest", content_by_stored(database));
   database.prepare("DELETE FROM map_meta WHERE key = ?").bind_text(1, kFileDigestKey).run();
 }
 
@@ -236,6 +244,20 @@ MapDigests verified_digests(const SqlDatabase& database) {
   stored.compare("digest", digests.content);
   stored.refuse_others();
   return digests;
+}
+
+void verify_registries(const SqlDatabase& database) {
+  StoredDigests stored(database);
+  stored.compare("schema_digest", schema_digest(database));
+  stored.compare("digest", content_by_stored(database));
+  for (const TableName& table : tables_of(database))
+    if (is_registry(table.name))
+      stored.compare("digest." + table.name, digest_rows(database.prepare(query_of(table))));
+}
+
+void verify_table(const SqlDatabase& database, const std::string& table) {
+  StoredDigests(database).compare("digest." + table,
+                                  digest_rows(database.prepare(query_of({table, false}))));
 }
 
 }  // namespace roadbook

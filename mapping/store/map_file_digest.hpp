@@ -50,4 +50,12 @@ void renew_table_digest(const SqlDatabase& database, const std::string& table);
 /// read.
 [[nodiscard]] MapDigests verified_digests(const SqlDatabase& database);
 
+/// Compares the digest of the CREATE statements, that of the content with the stored digests of
+/// tables, and those of `map_meta` and of GeoPackage's tables, which say what the file holds. Rows
+/// of other tables are not read. Throws BadInput as verified_digests does.
+void verify_registries(const SqlDatabase& database);
+
+/// Compares the digest of one table, with which its rows are as they were stored. Throws BadInput.
+void verify_table(const SqlDatabase& database, const std::string& table);
+
 }  // namespace roadbook

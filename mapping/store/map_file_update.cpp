@@ -80,7 +80,7 @@ void MapUpdate::write_map(const Map& map) {
 
 void MapUpdate::write_layer(const VectorLayer& layer) {
   const GdalScope scope(impl_->content_time);
-  GdalDataset dataset = open_geopackage(scope, impl_->copy, true);
+  GdalDataset dataset = open_geopackage(scope, impl_->copy);
   write_vector_layer(scope, *dataset, layer);
   dataset.reset();
   scope.check(impl_->copy, layer.name);
@@ -113,7 +113,7 @@ bool MapUpdate::remove(const std::string& name) {
     return true;
   }
   const GdalScope scope(impl_->content_time);
-  GdalDataset dataset = open_geopackage(scope, impl_->copy, true);
+  GdalDataset dataset = open_geopackage(scope, impl_->copy);
   // GDAL's own statement: it also removes GDAL's other entries about the layer.
   const std::string sql = "DROP TABLE " + sql_name(name);
   dataset->ReleaseResultSet(dataset->ExecuteSQL(sql.c_str(), nullptr, nullptr));

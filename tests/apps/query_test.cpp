@@ -63,6 +63,12 @@ TEST(QueryVerb, TellsWhatIsKnownAtAPlaceOfALane) {
                            "Speed profiles", "allowed by grip", "<h2>Experiments", "kl.svg"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
   EXPECT_EQ(place.run("roadbook report -m place.gpkg -o r.html --evaluation road/cam0").status, 2);
+  const auto loaded =
+      place.run("LD_DEBUG=libs roadbook query -m place.gpkg --lane " + lane + " --s 3");
+  EXPECT_EQ(loaded.status, 0);
+  if (ROADBOOK_LATE_LIBRARIES) {
+    EXPECT_EQ(loaded.err.find("libgdal"), std::string::npos) << "a tenth of a second";
+  }
   const auto outside = place.run("roadbook query -m place.gpkg --at 900,900");
   EXPECT_EQ(outside.status, 1);
   EXPECT_NE(outside.err.find("--at: got 900,900"), std::string::npos) << outside.err;

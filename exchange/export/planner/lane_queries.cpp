@@ -6,25 +6,29 @@
 namespace roadbook {
 namespace {
 
-SpeedMap require_speeds(const std::filesystem::path& map, const std::vector<LanePath>& paths) {
-  auto speeds = read_current_speeds(MapLayers(map), paths);
+SpeedMap require_speeds(const MapLayers& layers, const std::vector<LanePath>& paths) {
+  auto speeds = read_current_speeds(layers, paths);
   if (!speeds)
-    throw BadInput(Problem{Severity::kError, map.string(), 0, "speed_profile", "none",
+    throw BadInput(Problem{Severity::kError, layers.file().string(), 0, "speed_profile", "none",
                            "a speed map: run `roadbook speeds` on the map"});
   return std::move(*speeds);
 }
 
 }  // namespace
 
+// Most of a map are images and landmarks, which no query reads.
 LaneQueries::LaneQueries(const std::filesystem::path& map, const QueryContent& content)
-    : stored_(load_paths(map)),
-      speeds_(require_speeds(map, stored_.paths)),
-      items_(content.everything ? read_items(MapLayers(map)) : std::vector<LayerItem>()),
+    : LaneQueries(MapLayers(map, VerifiedPart::kWhatIsRead), content) {}
+
+LaneQueries::LaneQueries(const MapLayers& layers, const QueryContent& content)
+    : stored_(load_paths(layers)),
+      speeds_(require_speeds(layers, stored_.paths)),
+      items_(content.everything ? read_items(layers) : std::vector<LayerItem>()),
       now_ns_(content.now_ns.value_or(time_of_items(items_, speeds_.now_ns))),
       effects_(items_, now_ns_, speeds_.options),
-      friction_(read_friction_layers(MapLayers(map), stored_.paths)),
+      friction_(read_friction_layers(layers, stored_.paths)),
       strips_(friction_ ? friction_->strips : LaneStrips(stored_.paths, 1.0, 2.0)) {
-  if (content.everything) read_everything(MapLayers(map));
+  if (content.everything) read_everything(layers);
   const GroundFields fields{occupancy_ ? &*occupancy_ : nullptr, labels_ ? &*labels_ : nullptr};
   const auto cell_at = cells_of(speeds_);
   const auto place = [cell_at](const Eigen::Vector2d& p) {

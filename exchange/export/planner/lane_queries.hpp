@@ -45,6 +45,7 @@ class LaneQueries {
   [[nodiscard]] const LaneQuery& of(std::uint64_t lane) const { return queries_.at(lane); }
 
  private:
+  LaneQueries(const MapLayers& layers, const QueryContent& content);
   void read_everything(const MapLayers& layers);
 
   StoredPaths stored_;

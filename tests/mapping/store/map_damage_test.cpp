@@ -1,13 +1,16 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 
 #include "base/error.hpp"
+#include "mapping/layers/map_layers.hpp"
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
+#include "mapping/store/map_file_codec.hpp"
 #include "mapping/store/map_file_seal.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
 #include "tests/mapping/store/small_map.hpp"
@@ -233,6 +236,76 @@ TEST(MapDamage, LayersAndMetaAreCovered) {
     EXPECT_THROW(MapLayers{path}, BadInput) << marker;
     EXPECT_FALSE(check_map(path).problems.empty()) << marker;
   }
+}
+
+// A query of the speeds need not read images and landmarks. What it reads must be what was stored,
+// and so must the tables and digests that say what that is.
+TEST(MapDamage, AReaderOfALayerIsStoppedByDamageInItAndNotElsewhere) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapFileBuilder(path, "key").finish(small_map(5), {{"note", "a marker in the meta table"}});
+  const std::string good = read_bytes(path);
+  const VectorLayer poses = MapLayers(path).read_layer("poses");
+  const auto field_refused = [&]() -> std::string {
+    EXPECT_THROW(MapLayers{path}, BadInput);
+    try {
+      const MapLayers layers(path, VerifiedPart::kWhatIsRead);
+      EXPECT_EQ(layers.read_layer("poses").features.size(), poses.features.size());
+    } catch (const BadInput& error) {
+      return error.problems().front().field;
+    }
+    return "";
+  };
+  const auto refusal = [&](const std::string& sql) {
+    write_bytes(path, good);
+    SqlDatabase(path, SqlMode::kReadWrite).run(sql);
+    return field_refused();
+  };
+  EXPECT_EQ(refusal("UPDATE landmarks SET x = 7.0"), "");
+  EXPECT_EQ(refusal("UPDATE gpkg_contents SET description = 'mine'"), "digest.gpkg_contents");
+  EXPECT_EQ(refusal("UPDATE map_meta SET value = 'mine' WHERE key = 'note'"), "digest");
+  EXPECT_EQ(refusal("UPDATE map_meta SET value = 'mine' WHERE key = 'digest.landmarks'"), "digest");
+  EXPECT_EQ(refusal("CREATE TABLE mine(x)"), "schema_digest");
+  // The last bit of a number, as SQLite stores it.
+  std::string number;
+  pack(number, std::get<double>(poses.features[3].values[poses.field("heading_rad").value()]));
+  std::reverse(number.begin(), number.end());
+  std::string bad = good;
+  ASSERT_NE(good.find(number), std::string::npos);
+  bad[good.find(number) + 7] = static_cast<char>(bad[good.find(number) + 7] ^ 1);
+  write_bytes(path, bad);
+  EXPECT_EQ(field_refused(), "digest.poses");
+}
+
+// Bytes anywhere: the layer is the one that was stored, or the result is one error line.
+TEST(MapDamage, OfALayerThatIsReadIsFoundWhereverItIs) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapFileBuilder(path, "key").finish(small_map(5), {});
+  const std::string good = read_bytes(path);
+  const auto text_of = [&] {
+    std::string text;
+    for (const Feature& f :
+         MapLayers(path, VerifiedPart::kWhatIsRead).read_layer("poses").features) {
+      text.append(reinterpret_cast<const char*>(f.points.front().data()), 32);
+      for (const FieldValue& value : f.values)
+        if (const auto* number = std::get_if<double>(&value)) text += std::to_string(*number);
+    }
+    return text;
+  };
+  const std::string content = text_of();
+  int refused = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Random random(seed, "damage of a layer");
+    write_bytes(path, damaged(good, random));
+    try {
+      EXPECT_EQ(text_of(), content) << seed;
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 50);
+  EXPECT_LT(refused, 300);
 }
 
 }  // namespace

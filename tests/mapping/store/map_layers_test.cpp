@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
+#include "mapping/layers/stored_vector.hpp"
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
@@ -68,6 +69,53 @@ TEST(MapLayers, AVectorLayerComesBackAsItWas) {
     EXPECT_EQ(back.features[i].values, layer.features[i].values);
   }
   EXPECT_EQ(load_map(path).keyframes.size(), small_map(1).keyframes.size());
+}
+
+// What another program may have written, with digests that fit.
+TEST(MapLayers, GeometriesThatRoadbookDoesNotWriteAreRefused) {
+  const Folder folder;
+  const SqlDatabase database(folder / "a.gpkg", SqlMode::kCreate);
+  database.run(
+      "CREATE TABLE gpkg_contents(table_name, description); "
+      "CREATE TABLE gpkg_geometry_columns(table_name, column_name, geometry_type_name, z, m); "
+      "CREATE TABLE line(fid INTEGER PRIMARY KEY, geom BLOB, width_m REAL); "
+      "INSERT INTO gpkg_contents VALUES('line', 'a line'); "
+      "INSERT INTO gpkg_geometry_columns VALUES('line', 'geom', 'LINESTRING', 1, 0)");
+  const auto refusal = [&](const std::string& geometry) -> std::string {
+    database.run("DELETE FROM line; INSERT INTO line VALUES(1, x'" + geometry + "', 2.5)");
+    try {
+      const Feature line = read_stored_vector(database, "line").features.at(0);
+      EXPECT_EQ(line.points.at(0), Eigen::Vector4d(1.0, 2.0, 0.0, 0.0));
+      EXPECT_EQ(std::get<double>(line.values.at(0)), 2.5);
+    } catch (const BadInput& error) {
+      return error.problems().front().got;
+    }
+    return "";
+  };
+  const std::string head =
+      "47500001"
+      "00000000";  // little-endian, no envelope
+  const std::string one = "000000000000F03F";
+  const std::string two = "0000000000000040";
+  const std::string zero = "0000000000000000";
+  EXPECT_EQ(refusal(head + "01EA03000001000000" + one + two + zero), "");
+  EXPECT_EQ(
+      refusal("4750000300000000" + one + one + two + two + "01EA03000001000000" + one + two + zero),
+      "")
+      << "with an envelope";
+  EXPECT_EQ(refusal(head + "01EA03000001000000" + one + two), "33 bytes") << "cut";
+  EXPECT_EQ(refusal(head + "01EA030000FFFFFFFF" + one + two + zero), "41 bytes") << "endless";
+  EXPECT_EQ(refusal(head + "01EB03000001000000"), "geometry 1003");
+  EXPECT_EQ(refusal("47580001"
+                    "00000000"),
+            "no GeoPackage geometry");
+  EXPECT_EQ(refusal("47500000"
+                    "00000000"),
+            "flags 0")
+      << "big-endian";
+  EXPECT_EQ(refusal("47"), "1 bytes");
+  database.run("UPDATE gpkg_geometry_columns SET geometry_type_name = 'MULTIPOLYGON'");
+  EXPECT_THROW((void)read_stored_vector(database, "line"), BadInput);
 }
 
 TEST(MapLayers, GisProgramsSeeLayersWithTheirCoordinateSystemAndNothingElse) {
