@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/files/disk_space.hpp"
+#include "base/target_clones.hpp"
 
 namespace roadbook {
 namespace {
@@ -37,6 +38,46 @@ float saturation_weight(float grey) {
   if (grey <= kSaturationBegins) return 1.0F;
   const float t = std::min(1.0F, (grey - kSaturationBegins) / (254.0F - kSaturationBegins));
   return 1.0F + t * (kSaturatedWeight - 1.0F);
+}
+
+// Adds a row of a block to the sums of its pixels.
+ROADBOOK_CLONES __attribute__((optimize("O3"))) void add_greys(const float* __restrict grey,
+                                                               const float* __restrict weight,
+                                                               float gain,
+                                                               float* __restrict weights,
+                                                               float* __restrict balanced,
+                                                               float* __restrict balanced_squares,
+                                                               float* __restrict recorded,
+                                                               float* __restrict recorded_squares) {
+  for (int c = 0; c < TileGround::kStep; ++c) {
+    const float w = weight[c];
+    const float even = grey[c] * gain - kMiddleGrey;
+    const float own = grey[c] - kMiddleGrey;
+    weights[c] += w;
+    balanced[c] += w * even;
+    balanced_squares[c] += w * even * even;
+    recorded[c] += w * own;
+    recorded_squares[c] += w * own * own;
+  }
+}
+
+// Counts a frame at the pixels of a row of a block.
+ROADBOOK_CLONES __attribute__((optimize("O3"))) void add_frame(const float* __restrict weight,
+                                                               std::uint32_t frame,
+                                                               std::uint16_t* __restrict count,
+                                                               std::uint32_t* __restrict first,
+                                                               std::uint32_t* __restrict last,
+                                                               float* __restrict best_weight,
+                                                               std::uint32_t* __restrict best) {
+  constexpr std::uint16_t kMost = std::numeric_limits<std::uint16_t>::max();
+  for (int c = 0; c < TileGround::kStep; ++c) {
+    first[c] = count[c] == 0 ? frame : first[c];
+    last[c] = frame;
+    best[c] = weight[c] > best_weight[c] ? frame : best[c];
+    best_weight[c] = weight[c] > best_weight[c] ? weight[c] : best_weight[c];
+  }
+  for (int c = 0; c < TileGround::kStep; ++c)
+    count[c] = static_cast<std::uint16_t>(count[c] + (count[c] != kMost ? 1 : 0));
 }
 
 template <typename T>
@@ -120,15 +161,15 @@ void MosaicTile::add(const MosaicImage& image,
       const std::array<GroundSight, 4> corners{at(r, c), at(r, c + 1), at(r + 1, c),
                                                at(r + 1, c + 1)};
       const bool seen = std::ranges::all_of(corners, [](const auto& s) { return s.weight > 0; });
-      if (seen)
-        contributed |=
-            add_block(image, corners, c * TileGround::kStep, r * TileGround::kStep, frame, mode);
+      if (!seen) continue;
+      add_block(image, corners, c * TileGround::kStep, r * TileGround::kStep, frame, mode);
+      contributed = true;
     }
   }
   if (contributed && (frames_.empty() || frames_.back() != frame)) frames_.push_back(frame);
 }
 
-bool MosaicTile::add_block(const MosaicImage& image,
+void MosaicTile::add_block(const MosaicImage& image,
                            const std::array<GroundSight, 4>& corners,
                            int column,
                            int row,
@@ -150,38 +191,21 @@ bool MosaicTile::add_block(const MosaicImage& image,
     const auto [u, du] = along(&GroundSight::u);
     const auto [v, dv] = along(&GroundSight::v);
     const auto [w, dw] = along(&GroundSight::weight);
-    std::size_t pixel =
-        static_cast<std::size_t>(row + r) * kTileSide + static_cast<std::size_t>(column);
-    for (int c = 0; c < TileGround::kStep; ++c, ++pixel) {
+    std::array<float, TileGround::kStep> grey;
+    std::array<float, TileGround::kStep> weight;
+    for (std::size_t c = 0; c < grey.size(); ++c) {
       const auto a = static_cast<float>(c);
-      const float grey = bilinear(source, (u + a * du + 0.5F) * shrink - 0.5F,
-                                  (v + a * dv + 0.5F) * shrink - 0.5F);
-      add_sample(pixel, grey, image.gain, w + a * dw, frame, mode);
+      grey[c] = bilinear(source, (u + a * du + 0.5F) * shrink - 0.5F,
+                         (v + a * dv + 0.5F) * shrink - 0.5F);
+      weight[c] = w + a * dw;
+      if (mode == OverheadMode::kWeighted) weight[c] *= saturation_weight(grey[c]);
     }
-  }
-  return true;
-}
-
-void MosaicTile::add_sample(std::size_t pixel,
-                            float grey,
-                            float gain,
-                            float weight,
-                            std::uint32_t frame,
-                            OverheadMode mode) {
-  if (mode == OverheadMode::kWeighted) weight *= saturation_weight(grey);
-  weight_[pixel] += weight;
-  const auto add_to = [&](Sums& sums, float value) {
-    sums.values[pixel] += weight * value;
-    sums.squares[pixel] += weight * value * value;
-  };
-  add_to(balanced_, grey * gain - kMiddleGrey);
-  add_to(recorded_, grey - kMiddleGrey);
-  if (count_[pixel] == 0) first_[pixel] = frame;
-  if (count_[pixel] < std::numeric_limits<std::uint16_t>::max()) ++count_[pixel];
-  last_[pixel] = frame;
-  if (weight > best_weight_[pixel]) {
-    best_weight_[pixel] = weight;
-    best_[pixel] = frame;
+    const std::size_t pixel =
+        static_cast<std::size_t>(row + r) * kTileSide + static_cast<std::size_t>(column);
+    add_greys(grey.data(), weight.data(), image.gain, &weight_[pixel], &balanced_.values[pixel],
+              &balanced_.squares[pixel], &recorded_.values[pixel], &recorded_.squares[pixel]);
+    add_frame(weight.data(), frame, &count_[pixel], &first_[pixel], &last_[pixel],
+              &best_weight_[pixel], &best_[pixel]);
   }
 }
 

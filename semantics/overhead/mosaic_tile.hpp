@@ -82,7 +82,7 @@ class MosaicTile {
   void load(const std::filesystem::path& path);        ///< throws StorageError
 
  private:
-  bool add_block(const MosaicImage& image,
+  void add_block(const MosaicImage& image,
                  const std::array<GroundSight, 4>& corners,
                  int column,
                  int row,
@@ -94,13 +94,6 @@ class MosaicTile {
   [[nodiscard]] const Sums& sums(Brightness brightness) const {
     return brightness == Brightness::kBalanced ? balanced_ : recorded_;
   }
-  void add_sample(std::size_t pixel,
-                  float grey,
-                  float gain,
-                  float weight,
-                  std::uint32_t frame,
-                  OverheadMode mode);
-
   TileIndex index_;
   double resolution_m_;
   TileGround ground_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
 #include <string>
 #include <system_error>
 
@@ -37,6 +38,14 @@ OverheadExposure exposure_of(const std::vector<std::vector<double>>& gains,
       exposure.most_gain = std::max(exposure.most_gain, gain);
     }
   return exposure;
+}
+
+// What `memory_mb` leaves beside the tiles, for images between the two passes [bytes].
+std::size_t room_for_images(const PlacedViews& placed, std::size_t max_resident, int memory_mb) {
+  std::set<TileIndex> tiles;
+  for (const auto& of_view : placed.tiles) tiles.insert(of_view.begin(), of_view.end());
+  const std::size_t taken = std::min(tiles.size(), max_resident) * MosaicTile::bytes();
+  return static_cast<std::size_t>(memory_mb) * 1'000'000 - taken;
 }
 
 class Clock {
@@ -86,14 +95,15 @@ OverheadSummary make_overhead(const OverheadInput& input,
   summary.vehicles = input.vehicles;
   Clock clock;
   const PlacedViews placed = place_views(input, options);
-  const auto gains = balance_exposure(input, placed, options, progress);
+  const std::size_t max_resident =
+      static_cast<std::size_t>(options.memory_mb) * 1'000'000 / MosaicTile::bytes();
+  ViewImages images(input, room_for_images(placed, max_resident, options.memory_mb));
+  const auto gains = balance_exposure(input, placed, options, progress, &images);
   summary.exposure = exposure_of(gains, options);
   summary.exposure_seconds = clock.lap();
 
-  const std::size_t max_resident =
-      static_cast<std::size_t>(options.memory_mb) * 1'000'000 / MosaicTile::bytes();
   TileStore store(out / ".overhead_scratch", max_resident, options.resolution_m, input.ground);
-  const MosaicCounts counts = add_views(input, placed, gains, options, progress, &store);
+  const MosaicCounts counts = add_views(input, placed, gains, options, progress, &images, &store);
   summary.images_used = counts.images_used;
   summary.images_missing = counts.images_missing;
   summary.mosaic_seconds = clock.lap();

@@ -54,7 +54,8 @@ std::vector<ExposureSample> sample(const cv::Mat& image,
 std::vector<std::vector<double>> balance_exposure(const OverheadInput& input,
                                                   const PlacedViews& placed,
                                                   const OverheadOptions& options,
-                                                  const Progress& progress) {
+                                                  const Progress& progress,
+                                                  ViewImages* view_images) {
   std::vector<std::pair<std::size_t, std::size_t>> images;  // (view, camera)
   std::vector<std::vector<double>> gains(input.views.size());
   for (std::size_t view = 0; view < input.views.size(); ++view) {
@@ -71,7 +72,8 @@ std::vector<std::vector<double>> balance_exposure(const OverheadInput& input,
     report(progress, "exposure", begin, images.size());
     parallel_for(std::min(kBatch, images.size() - begin), options.num_threads, [&](std::size_t i) {
       const auto [view, camera] = images[begin + i];
-      const cv::Mat image = view_image(input, view, camera);
+      const cv::Mat image = placed.tiles[view].empty() ? view_images->last(view, camera)
+                                                       : view_images->first(view, camera);
       if (image.empty()) return;
       const int rig = input.views[view].rig;
       const MountedCamera& mounted = input.rigs[static_cast<std::size_t>(rig)].cameras[camera];

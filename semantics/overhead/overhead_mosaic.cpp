@@ -38,7 +38,7 @@ class Mosaic {
          const OverheadOptions& options)
       : input_(input), placed_(placed), gains_(gains), options_(options) {}
 
-  void read(const Batch& batch, MosaicCounts* counts) {
+  void read(const Batch& batch, ViewImages* views, MosaicCounts* counts) {
     images_.assign(batch.end - batch.begin, {});
     std::vector<std::pair<std::size_t, std::size_t>> wanted;
     for (std::size_t i = 0; i < images_.size(); ++i) {
@@ -50,8 +50,7 @@ class Mosaic {
     parallel_for(wanted.size(), options_.num_threads, [&](std::size_t n) {
       const auto [i, camera] = wanted[n];
       const std::size_t view = batch.begin + i;
-      images_[i][camera] =
-          make_mosaic_image(view_image(input_, view, camera), gains_[view][camera]);
+      images_[i][camera] = make_mosaic_image(views->last(view, camera), gains_[view][camera]);
     });
     for (const auto& [i, camera] : wanted)
       ++(images_[i][camera].empty() ? counts->images_missing : counts->images_used);
@@ -88,13 +87,14 @@ MosaicCounts add_views(const OverheadInput& input,
                        const std::vector<std::vector<double>>& gains,
                        const OverheadOptions& options,
                        const Progress& progress,
+                       ViewImages* images,
                        TileStore* store) {
   Mosaic mosaic(input, placed, gains, options);
   MosaicCounts counts;
   for (std::size_t begin = 0; begin < input.views.size();) {
     report(progress, "overhead", begin, input.views.size());
     const Batch batch = next_batch(placed, begin, store->max_resident() / 2);
-    mosaic.read(batch, &counts);
+    mosaic.read(batch, images, &counts);
     const std::vector<MosaicTile*> tiles = store->acquire(batch.tiles);
     parallel_for(tiles.size(), options.num_threads,
                  [&](std::size_t i) { mosaic.add_to(batch, tiles[i]); });

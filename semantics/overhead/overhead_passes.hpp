@@ -9,6 +9,7 @@
 #include "semantics/overhead/overhead_input.hpp"
 #include "semantics/overhead/overhead_options.hpp"
 #include "semantics/overhead/tile_store.hpp"
+#include "semantics/overhead/view_images.hpp"
 
 namespace roadbook {
 
@@ -25,26 +26,25 @@ struct PlacedViews {
 /// Own-vehicle mask of a camera; empty if the input has none. Refers to `input`.
 [[nodiscard]] CarMask mask_of(const OverheadInput& input, int rig, std::size_t camera);
 
-/// The image of a view as CV_8U of the camera's size, empty where it is missing. Throws BadInput.
-[[nodiscard]] cv::Mat view_image(const OverheadInput& input, std::size_t view, std::size_t camera);
-
 /// gains[view][camera], estimated from ground near the vehicle that several images show.
 [[nodiscard]] std::vector<std::vector<double>> balance_exposure(const OverheadInput& input,
                                                                 const PlacedViews& placed,
                                                                 const OverheadOptions& options,
-                                                                const Progress& progress);
+                                                                const Progress& progress,
+                                                                ViewImages* images);
 
 struct MosaicCounts {
   std::size_t images_used = 0;
   std::size_t images_missing = 0;
 };
 
-/// Averages all images into the tiles of `store`, in driving order. Each image is read once.
+/// Averages all images into the tiles of `store`, in driving order.
 MosaicCounts add_views(const OverheadInput& input,
                        const PlacedViews& placed,
                        const std::vector<std::vector<double>>& gains,
                        const OverheadOptions& options,
                        const Progress& progress,
+                       ViewImages* images,
                        TileStore* store);
 
 }  // namespace roadbook

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "base/error.hpp"
 #include "semantics/overhead/overhead_passes.hpp"
 
 namespace roadbook {
@@ -47,24 +45,6 @@ CarMask mask_of(const OverheadInput& input, int rig, std::size_t camera) {
     mask.pixels = &input.masks[r][camera];
   if (r < input.bodies.size()) mask.body = input.bodies[r];
   return mask;
-}
-
-cv::Mat view_image(const OverheadInput& input, std::size_t view, std::size_t camera) {
-  const OverheadView& v = input.views[view];
-  if (camera >= v.images.size() || !v.images[camera]) return {};
-  cv::Mat image = v.images[camera]();
-  if (image.empty()) return {};
-  const MountedCamera& mounted = input.rigs[static_cast<std::size_t>(v.rig)].cameras[camera];
-  const auto size = [](int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-  };
-  if (image.type() != CV_8UC1 || image.cols != mounted.camera.width ||
-      image.rows != mounted.camera.height)
-    throw BadInput({Severity::kError, mounted.name, 0,
-                    "image of keyframe " + std::to_string(v.keyframe),
-                    size(image.cols, image.rows) + " of type " + std::to_string(image.type()),
-                    size(mounted.camera.width, mounted.camera.height) + " grey 8 bit"});
-  return image;
 }
 
 }  // namespace roadbook

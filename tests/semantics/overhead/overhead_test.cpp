@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/random.hpp"
@@ -177,6 +179,35 @@ TEST(Overhead, GivesTheSameBytesOnAnyNumberOfThreadsAndWithLittleMemory) {
   EXPECT_EQ(bytes_of(one.frames), bytes_of(three.frames));
   EXPECT_EQ(bytes_of(one.frame_table), bytes_of(three.frame_table));
   EXPECT_EQ(bytes_of(one.tile_table), bytes_of(three.tile_table));
+}
+
+// Decoding takes as long as the rest: images wait in memory between the two passes. Where there is
+// no room, they are decoded again, for the same bytes.
+TEST(Overhead, DecodesAnImageOnceWhereMemoryAllows) {
+  const Scratch out("decodes");
+  OverheadInput input = drive_over({.grey = test::lines}, 5, 6.0);
+  std::vector<std::atomic<int>> calls(20);
+  for (std::size_t view = 0; view < input.views.size(); ++view)
+    for (std::size_t camera = 0; camera < 4; ++camera) {
+      auto& image = input.views[view].images[camera];
+      image = [&counter = calls[4 * view + camera], decode = image] {
+        ++counter;
+        return decode();
+      };
+    }
+  OverheadOptions options = quick_overhead();
+  const auto once = make_overhead(input, out.path() / "once", options);
+  for (const auto& count : calls) EXPECT_EQ(count, 1);
+  EXPECT_EQ(once.images_used, 20U);
+  // 25 tiles take 62 MB of these: half of the images have room.
+  options.memory_mb = 64;
+  const auto again = make_overhead(input, out.path() / "again", options);
+  const int sum = std::accumulate(calls.begin(), calls.end(), 0,
+                                  [](int so_far, const auto& count) { return so_far + count; });
+  EXPECT_GT(sum, 20 + 20);
+  EXPECT_LT(sum, 20 + 40);
+  EXPECT_EQ(bytes_of(once.image), bytes_of(again.image));
+  EXPECT_EQ(bytes_of(once.variance), bytes_of(again.variance));
 }
 
 // A smooth gradient of grey: no step between neighbouring pixels, at tile borders or elsewhere.
