@@ -22,7 +22,7 @@ struct VehicleUse {
 /// One instant: vehicle pose and camera images.
 struct OverheadView {
   /// One function per camera of the rig; returns the grey 8-bit image, empty if it is missing.
-  /// Called at most twice (exposure, mosaic), from any thread.
+  /// Called at most twice (again for the mosaic if memory is short), from any thread.
   std::vector<std::function<cv::Mat()>> images;
   Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
   int rig = 0;            ///< index in OverheadInput::rigs
