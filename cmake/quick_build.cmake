@@ -14,16 +14,28 @@ endif()
 
 set(CMAKE_UNITY_BUILD ON)
 set(CMAKE_UNITY_BUILD_MODE GROUP)
-set(ROADBOOK_UNITY_FILES 16 CACHE STRING "Files of a folder compiled together, at most")
+set(ROADBOOK_UNITY_FILES 16 CACHE STRING "Files compiled together, at most")
+set(ROADBOOK_UNITY_SMALL 8 CACHE STRING "Files of a folder that is compiled together with other small ones, at most")
 
 # roadbook_unity_groups(SOURCES...): groups sources of the calling folder, up to ROADBOOK_UNITY_FILES
-# of one sub-folder each, in parts of equal size.
+# of one sub-folder each, in parts of equal size. Small sub-folders share groups: a group alone costs
+# about 1 s for templates that others instantiate as well.
 function(roadbook_unity_groups)
   foreach(source ${ARGN})
     get_filename_component(folder "${source}" DIRECTORY)
     string(MAKE_C_IDENTIFIER "in_${folder}" name)
-    list(APPEND names ${name})
+    list(APPEND folders ${name})
     list(APPEND sources_${name} ${source})
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  foreach(name ${folders})
+    list(LENGTH sources_${name} count)
+    if(count GREATER ROADBOOK_UNITY_SMALL)
+      list(APPEND names ${name})
+    else()
+      list(APPEND names small_folders)
+      list(APPEND sources_small_folders ${sources_${name}})
+    endif()
   endforeach()
   list(REMOVE_DUPLICATES names)
   foreach(name ${names})

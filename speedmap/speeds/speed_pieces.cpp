@@ -10,7 +10,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kGrid_m = 0.5;
-constexpr int kMostSteps = 4000;
+constexpr int kMostSpeedSteps = 4000;
 
 struct CutGrid {
   double begin_m;
@@ -100,7 +100,7 @@ std::vector<SpeedPiece> speed_pieces(const LeastSpeed& least_speed,
   const double length = end_m - begin_m;
   // A grid that the longest piece fits: at least that many steps as pieces are needed.
   const double needed = std::max(length / kGrid_m, 2.0 * length / options.longest_m);
-  const int steps = std::clamp(static_cast<int>(std::ceil(needed)), 1, kMostSteps);
+  const int steps = std::clamp(static_cast<int>(std::ceil(needed)), 1, kMostSpeedSteps);
   const CutGrid grid{begin_m, length / steps, steps};
   std::vector<double> speeds;
   for (int i = 0; i < steps; ++i) speeds.push_back(least_speed(grid.at(i), grid.at(i + 1)));

@@ -13,9 +13,10 @@
 #include "tests/layout/declared_names.hpp"
 
 // Builds without a compiler cache compile some files of a folder together
-// (cmake/quick_build.cmake). The selection changes with every new file. So names that a file
-// declares for itself must be unique among the files of its folder in its target. Compilers report
-// a clash only for files that are compiled together.
+// (cmake/quick_build.cmake), and small folders of a target with each other. The selection changes
+// with every new file. So names that a file declares for itself must be unique among the files of
+// its folder in its target, in small folders among those of all small folders. Compilers report a
+// clash only for files that are compiled together.
 
 namespace roadbook {
 namespace {
@@ -127,7 +128,11 @@ TEST(Layout, LeavesToFilesWhatDoesNoHarm) {
             none);
 }
 
-// The folders of the targets that a CMake file names: a list of sources for each target and folder.
+// ROADBOOK_UNITY_SMALL of cmake/quick_build.cmake.
+constexpr std::size_t kFilesOfASmallFolder = 8;
+
+// The folders of the targets that a CMake file names: a list of sources for each target and folder,
+// one for all small folders of a target.
 std::vector<std::vector<fs::path>> folders_of_targets_in(const fs::path& cmake_file) {
   static const std::regex comment("#[^\n]*");
   static const std::regex call(R"(\(([^()]*\.cpp[^()]*)\))");
@@ -140,7 +145,13 @@ std::vector<std::vector<fs::path>> folders_of_targets_in(const fs::path& cmake_f
       if (const fs::path file = (cmake_file.parent_path() / word).lexically_normal();
           word.ends_with(".cpp") && fs::exists(file))
         folders[file.parent_path()].push_back(file);
-    for (auto& [folder, sources] : folders) lists.push_back(std::move(sources));
+    std::vector<fs::path> of_small;
+    for (auto& [folder, sources] : folders)
+      if (sources.size() > kFilesOfASmallFolder)
+        lists.push_back(std::move(sources));
+      else
+        of_small.insert(of_small.end(), sources.begin(), sources.end());
+    if (!of_small.empty()) lists.push_back(std::move(of_small));
   }
   return lists;
 }

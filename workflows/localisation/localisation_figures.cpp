@@ -11,7 +11,7 @@ namespace roadbook {
 namespace {
 
 // Smallest value that at least `share` of the values do not exceed; empty without values.
-std::optional<double> quantile(std::vector<double> values, double share) {
+std::optional<double> figure_quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::nullopt;
   const double count = std::ceil(share * static_cast<double>(values.size()));
   const auto place = static_cast<std::ptrdiff_t>(std::max(1.0, count)) - 1;
@@ -94,12 +94,12 @@ LocalisationFigures localisation_figures(const std::vector<TimedFrame>& frames) 
     }
     was_lost = is_lost;
   }
-  figures.inliers_median = quantile(inliers, 0.5);
-  figures.inliers_p5 = quantile(inliers, 0.05);
-  figures.cpu_ms_median = quantile(cpu_ms, 0.5);
-  figures.cpu_ms_p99 = quantile(cpu_ms, 0.99);
-  figures.jump_median_m = quantile(jumps, 0.5);
-  figures.jump_p999_m = quantile(jumps, 0.999);
+  figures.inliers_median = figure_quantile(inliers, 0.5);
+  figures.inliers_p5 = figure_quantile(inliers, 0.05);
+  figures.cpu_ms_median = figure_quantile(cpu_ms, 0.5);
+  figures.cpu_ms_p99 = figure_quantile(cpu_ms, 0.99);
+  figures.jump_median_m = figure_quantile(jumps, 0.5);
+  figures.jump_p999_m = figure_quantile(jumps, 0.999);
   return figures;
 }
 
@@ -131,13 +131,13 @@ std::optional<LocalisationTruth> localisation_truth(const std::vector<TimedFrame
   LocalisationTruth result;
   result.frames = errors.distance.size();
   if (result.frames == 0) return result;  // recalls of zero
-  result.median_m = *quantile(errors.distance, 0.5);
-  result.p95_m = *quantile(errors.distance, 0.95);
-  result.max_m = *quantile(errors.distance, 1.0);
-  result.along_median_m = *quantile(errors.along, 0.5);
-  result.across_median_m = *quantile(errors.across, 0.5);
-  result.heading_median_rad = *quantile(errors.heading, 0.5);
-  result.heading_p95_rad = *quantile(errors.heading, 0.95);
+  result.median_m = *figure_quantile(errors.distance, 0.5);
+  result.p95_m = *figure_quantile(errors.distance, 0.95);
+  result.max_m = *figure_quantile(errors.distance, 1.0);
+  result.along_median_m = *figure_quantile(errors.along, 0.5);
+  result.across_median_m = *figure_quantile(errors.across, 0.5);
+  result.heading_median_rad = *figure_quantile(errors.heading, 0.5);
+  result.heading_p95_rad = *figure_quantile(errors.heading, 0.95);
   const auto share = [&](std::size_t count) {
     return static_cast<double>(count) / static_cast<double>(errors.with_truth);
   };

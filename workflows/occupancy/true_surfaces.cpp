@@ -14,8 +14,6 @@
 namespace roadbook {
 namespace {
 
-using nlohmann::json;
-
 // The world of a simulated drive, built again from what its truth says; empty for a scenario of a
 // file, which is not at hand.
 std::optional<World> world_of(const std::filesystem::path& drive) {
@@ -23,9 +21,9 @@ std::optional<World> world_of(const std::filesystem::path& drive) {
   if (!std::filesystem::exists(folder / "world.json") ||
       !std::filesystem::exists(folder / "effects.json"))
     return std::nullopt;
-  const json truth = json::parse(
+  const nlohmann::json truth = nlohmann::json::parse(
       read_regular_file(folder / "world.json", "the truth of a simulated drive"), nullptr, false);
-  const json made = json::parse(
+  const nlohmann::json made = nlohmann::json::parse(
       read_regular_file(folder / "effects.json", "the truth of a simulated drive"), nullptr, false);
   if (truth.is_discarded() || made.is_discarded() || !truth.contains("scenario"))
     return std::nullopt;

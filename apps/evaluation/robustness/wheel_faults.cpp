@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 constexpr double kNsPerS = 1e9;
 
-enum class Side { kLeft, kRight, kBoth };
+enum class FaultySide { kLeft, kRight, kBoth };
 
 /// The angles of both rear wheels in a `data.csv`.
 class WheelAngles {
@@ -43,11 +43,13 @@ class WheelAngles {
   std::array<std::size_t, 2> columns_;
 };
 
-bool has(Side side, int wheel) {
-  return side == Side::kBoth || (side == Side::kLeft) == (wheel == 0);
+bool has(FaultySide side, int wheel) {
+  return side == FaultySide::kBoth || (side == FaultySide::kLeft) == (wheel == 0);
 }
 
-Side drawn_side(Random& random) { return random.below(2) == 0 ? Side::kLeft : Side::kRight; }
+FaultySide drawn_side(Random& random) {
+  return random.below(2) == 0 ? FaultySide::kLeft : FaultySide::kRight;
+}
 
 // A start so that `seconds` fit into the drive, away from both ends where there is room.
 double drawn_start(const WheelAngles& wheels, double seconds, Random& random) {
@@ -56,7 +58,7 @@ double drawn_start(const WheelAngles& wheels, double seconds, Random& random) {
 }
 
 // The counters of one side do not count for a time, and count on from there.
-void stop_counting(WheelAngles& wheels, Side side, double from_s, double to_s) {
+void stop_counting(WheelAngles& wheels, FaultySide side, double from_s, double to_s) {
   for (const int wheel : {0, 1}) {
     if (!has(side, wheel)) continue;
     double lost = 0.0;
@@ -72,7 +74,7 @@ void stop_counting(WheelAngles& wheels, Side side, double from_s, double to_s) {
 }
 
 // The counters show an old value for a time, then the true value again.
-void hold(WheelAngles& wheels, Side side, double from_s, double to_s) {
+void hold(WheelAngles& wheels, FaultySide side, double from_s, double to_s) {
   for (const int wheel : {0, 1}) {
     if (!has(side, wheel)) continue;
     double held = wheels.at(0, wheel);
@@ -90,7 +92,7 @@ DriveFault stuck(double seconds, bool both) {
   return {"wheels: stuck " + fixed(seconds, 1) + " s, " + (both ? "both" : "one"),
           [=](const fs::path& drive, Random& random) {
             WheelAngles wheels(drive);
-            const Side side = both ? Side::kBoth : drawn_side(random);
+            const FaultySide side = both ? FaultySide::kBoth : drawn_side(random);
             const double start = drawn_start(wheels, seconds, random);
             stop_counting(wheels, side, start, start + seconds);
             wheels.write();
@@ -116,14 +118,14 @@ std::vector<DriveFault> faults_in_time() {
     stop_counting(w, drawn_side(random), 0.5 * w.length_s(), w.length_s());
   }));
   faults.push_back(changed("stuck from half way, both", [](WheelAngles& w, Random&) {
-    stop_counting(w, Side::kBoth, 0.5 * w.length_s(), w.length_s());
+    stop_counting(w, FaultySide::kBoth, 0.5 * w.length_s(), w.length_s());
   }));
   faults.push_back(changed("old value 2 s, both", [](WheelAngles& w, Random& random) {
     const double start = drawn_start(w, 2.0, random);
-    hold(w, Side::kBoth, start, start + 2.0);
+    hold(w, FaultySide::kBoth, start, start + 2.0);
   }));
   faults.push_back(changed("step", [](WheelAngles& w, Random& random) {
-    const Side side = drawn_side(random);
+    const FaultySide side = drawn_side(random);
     const double start = drawn_start(w, 0.0, random);
     const double step = (random.below(2) == 0 ? 1.0 : -1.0) * random.uniform(2.0, 20.0);
     for (std::size_t row = 0; row < w.rows(); ++row)
@@ -180,26 +182,27 @@ std::vector<DriveFault> faults_of_counters() {
 }
 
 std::vector<DriveFault> faults_of_wiring() {
-  const auto reversed = [](WheelAngles& w, Side side) {
+  const auto reversed = [](WheelAngles& w, FaultySide side) {
     for (std::size_t row = 0; row < w.rows(); ++row)
       for (const int wheel : {0, 1})
         if (has(side, wheel)) w.set(row, wheel, -w.at(row, wheel));
   };
-  return {changed("reversed, one",
-                  [=](WheelAngles& w, Random& random) { reversed(w, drawn_side(random)); }),
-          changed("reversed, both", [=](WheelAngles& w, Random&) { reversed(w, Side::kBoth); }),
-          changed("left and right swapped",
-                  [](WheelAngles& w, Random&) {
-                    for (std::size_t row = 0; row < w.rows(); ++row) {
-                      const double left = w.at(row, 0);
-                      w.set(row, 0, w.at(row, 1));
-                      w.set(row, 1, left);
-                    }
-                  }),
-          scaled("radius x 2", {"wheel_radius_left", "wheel_radius_right"}, 2.0),
-          scaled("radius / 2", {"wheel_radius_left", "wheel_radius_right"}, 0.5),
-          scaled("radius in mm", {"wheel_radius_left", "wheel_radius_right"}, 1000.0),
-          scaled("track width / 2", {"track_width"}, 0.5)};
+  return {
+      changed("reversed, one",
+              [=](WheelAngles& w, Random& random) { reversed(w, drawn_side(random)); }),
+      changed("reversed, both", [=](WheelAngles& w, Random&) { reversed(w, FaultySide::kBoth); }),
+      changed("left and right swapped",
+              [](WheelAngles& w, Random&) {
+                for (std::size_t row = 0; row < w.rows(); ++row) {
+                  const double left = w.at(row, 0);
+                  w.set(row, 0, w.at(row, 1));
+                  w.set(row, 1, left);
+                }
+              }),
+      scaled("radius x 2", {"wheel_radius_left", "wheel_radius_right"}, 2.0),
+      scaled("radius / 2", {"wheel_radius_left", "wheel_radius_right"}, 0.5),
+      scaled("radius in mm", {"wheel_radius_left", "wheel_radius_right"}, 1000.0),
+      scaled("track width / 2", {"track_width"}, 0.5)};
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ struct Entry {
   Eigen::Vector3d corner, next;
 };
 
-std::optional<Entry> entry_over(const PlannerSpace& space, std::size_t k) {
+std::optional<Entry> space_axis_over(const PlannerSpace& space, std::size_t k) {
   const auto corner = [&](std::size_t i) { return space.corners[i % 4]; };
   Entry entry{0.5 * (corner(k) + corner(k + 1)), 0.5 * (corner(k + 2) + corner(k + 3)), 0.0,
               corner(k), corner(k + 1)};
@@ -139,7 +139,7 @@ AutowareParking autoware_parking(const PlannerMap& map, const LaneletNetwork& ne
                                  : std::vector<std::size_t>();
     for (const std::size_t side : {0U, 1U, 3U, 2U})
       for (const std::size_t lanelet : near) {
-        const auto entry = entry_over(space, side);
+        const auto entry = space_axis_over(space, side);
         if (!found && entry && is_linked(*entry, lanelet_at(lanelet))) found = {*entry, lanelet};
       }
     if (!found) {

@@ -27,7 +27,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-Eigen::Vector2d left_of(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
+Eigen::Vector2d left_of_axis(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
 
 // Entry over the side from corner `first` to the next one.
 Axis entry_over(const PlannerSpace& space, std::size_t first, const PathPoint& lane) {
@@ -75,11 +75,11 @@ VehiclePlace add_arc(const VehiclePlace& from,
                      double radius_m,
                      std::vector<VehiclePlace>& poses) {
   const double side = turn_rad > 0.0 ? 1.0 : -1.0;
-  const Eigen::Vector2d centre = from.position + side * radius_m * left_of(from.heading);
+  const Eigen::Vector2d centre = from.position + side * radius_m * left_of_axis(from.heading);
   const int steps = static_cast<int>(std::ceil(std::abs(turn_rad) * radius_m / kPoseStep_m)) + 1;
   for (int i = 0; i <= steps; ++i) {
     const Eigen::Vector2d now = Eigen::Rotation2Dd(turn_rad * i / steps) * from.heading;
-    poses.push_back({centre - side * radius_m * left_of(now), now});
+    poses.push_back({centre - side * radius_m * left_of_axis(now), now});
   }
   return poses.back();
 }
@@ -89,7 +89,7 @@ void add_parallel_run(const Axis& axis,
                       const Eigen::Vector2d& heading,
                       const VehicleFootprint& vehicle,
                       std::vector<VehiclePlace>& poses) {
-  Eigen::Vector2d along = left_of(axis.outwards);
+  Eigen::Vector2d along = left_of_axis(axis.outwards);
   if (along.dot(heading) < 0.0) along = -along;
   const Eigen::Vector2d middle = axis.front - 0.5 * axis.depth_m * axis.outwards;
   const Eigen::Vector2d parked =

@@ -11,7 +11,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kRadius = 16.0;
-constexpr double kStep = 0.16;  // [m] of a frame at 2 m/s and 12.5 Hz
+constexpr double kFrameStep = 0.16;  // [m] of a frame at 2 m/s and 12.5 Hz
 
 // One frame of a synthetic drive and what became of it.
 struct Driven {
@@ -28,7 +28,7 @@ struct Driven {
   }
 };
 
-struct Drive {
+struct RingDrive {
   int frames = 60;
   double begin_m = 0.0;
   double left_m = 0.4;
@@ -36,14 +36,14 @@ struct Drive {
   bool has_wheels = true;
   std::uint64_t seed = 1;
   test::SyntheticFrameOptions corners;
-  std::function<double(int)> way_m = [](int i) { return kStep * i; };
+  std::function<double(int)> way_m = [](int i) { return kFrameStep * i; };
   std::function<void(int, std::vector<Features>&)> change = [](int, std::vector<Features>&) {};
   std::function<bool(int)> is_missing = [](int) { return false; };
 };
 
 std::vector<Driven> drive_through(const test::SyntheticPlace& place,
                                   const LandmarkIndex& index,
-                                  const Drive& drive,
+                                  const RingDrive& drive,
                                   const LocaliserOptions& options = {}) {
   Localiser localiser(index, place.half_rig, options);
   Random random(drive.seed, "synthetic drive");
@@ -95,7 +95,7 @@ TEST(Localiser, CovariancesHoldOverManyDrives) {
     options.spacing_m = 3.0;
     const auto place = test::synthetic_place(static_cast<std::uint64_t>(100 + d), options);
     const LandmarkIndex index(place.map);
-    Drive drive;
+    RingDrive drive;
     drive.frames = 25;
     drive.begin_m = 3.0 * d;
     drive.seed = static_cast<std::uint64_t>(d);
@@ -117,7 +117,7 @@ TEST(Localiser, CovariancesHoldOverManyDrives) {
 TEST(Localiser, UncertaintyGrowsWithoutLandmarksAndShrinksAtTheNextOnes) {
   const auto place = test::synthetic_place(1);
   const LandmarkIndex index(place.map);
-  Drive drive;
+  RingDrive drive;
   drive.frames = 160;
   constexpr int kBegin = 60;
   constexpr int kEnd = kBegin + 62;  // 10 m
@@ -138,7 +138,7 @@ TEST(Localiser, UncertaintyGrowsWithoutLandmarksAndShrinksAtTheNextOnes) {
   }
   // The noise of the wheels over 10 m: 1 cm per root metre, and 2 % that does not average out.
   EXPECT_NEAR(before, std::hypot(0.01 * std::sqrt(10.0), 0.02 * 10.0), 0.03);
-  EXPECT_NEAR(driven[kEnd - 1].pose.since_fix_m, 62 * kStep, 0.3);
+  EXPECT_NEAR(driven[kEnd - 1].pose.since_fix_m, 62 * kFrameStep, 0.3);
   EXPECT_TRUE(driven[kEnd].has_fix());
   EXPECT_LT(std::sqrt(driven[kEnd].pose.local_covariance(0, 0)), 0.02);
   EXPECT_LT(driven[kEnd].off_m(), 0.03);
@@ -148,11 +148,11 @@ TEST(Localiser, IsFoundWithoutAGuessAnywhereAndInEitherDirection) {
   const auto place = test::synthetic_place(2);
   const LandmarkIndex index(place.map);
   for (int i = 0; i < 8; ++i) {
-    Drive drive;
+    RingDrive drive;
     drive.frames = 24;
     drive.begin_m = 12.3 * i;
     drive.seed = static_cast<std::uint64_t>(i);
-    if (i % 2 == 1) drive.way_m = [](int f) { return -kStep * f; };  // reversing
+    if (i % 2 == 1) drive.way_m = [](int f) { return -kFrameStep * f; };  // reversing
     const auto driven = drive_through(place, index, drive);
     EXPECT_TRUE(driven.back().has_fix()) << i;
     EXPECT_LT(largest_off(driven), 0.05) << i;
@@ -192,29 +192,29 @@ TEST(Localiser, EqualDescriptorsAreLost) {
 TEST(Localiser, StandsFaultsOfADrive) {
   const auto place = test::synthetic_place(6);
   const LandmarkIndex index(place.map);
-  const auto expect_good = [&](const char* what, const Drive& drive, double off_m) {
+  const auto expect_good = [&](const char* what, const RingDrive& drive, double off_m) {
     const auto driven = drive_through(place, index, drive);
     EXPECT_GT(fixes(driven), driven.size() * 9 / 10) << what;
     EXPECT_LT(largest_off(driven), off_m) << what;
   };
-  Drive dies;
+  RingDrive dies;
   dies.change = [](int i, std::vector<Features>& all) {
     if (i > 30) all[2] = {};
   };
   expect_good("a camera dies", dies, 0.05);
-  Drive wheels;
+  RingDrive wheels;
   wheels.wheel_scale = 1.01;
   expect_good("wheels 1 % too large", wheels, 0.05);
-  Drive missing;
+  RingDrive missing;
   missing.is_missing = [](int i) { return i == 30 || i == 31; };
   expect_good("0.2 s without images", missing, 0.05);
-  Drive stands;
-  stands.way_m = [](int i) { return kStep * (i < 20 ? i : i < 40 ? 20 : i - 20); };
+  RingDrive stands;
+  stands.way_m = [](int i) { return kFrameStep * (i < 20 ? i : i < 40 ? 20 : i - 20); };
   expect_good("the car stands", stands, 0.05);
-  Drive blind;
+  RingDrive blind;
   blind.has_wheels = false;
   expect_good("no wheels", blind, 0.05);
-  Drive gone;
+  RingDrive gone;
   gone.corners.gone_share = 0.6;
   expect_good("60 % of the landmarks are gone", gone, 0.08);
 }
@@ -224,9 +224,9 @@ TEST(Localiser, StandsFaultsOfADrive) {
 TEST(Localiser, ACarThatStandsDoesNotBecomeSurer) {
   const auto place = test::synthetic_place(7);
   const LandmarkIndex index(place.map);
-  Drive drive;
+  RingDrive drive;
   drive.frames = 110;
-  drive.way_m = [](int i) { return kStep * std::min(i, 30); };
+  drive.way_m = [](int i) { return kFrameStep * std::min(i, 30); };
   const auto driven = drive_through(place, index, drive);
   const auto sigma = [&](std::size_t i) {
     return std::sqrt(driven[i].pose.local_covariance(0, 0));
@@ -239,13 +239,13 @@ TEST(Localiser, ACarThatStandsDoesNotBecomeSurer) {
 TEST(Localiser, UncertaintyCoversACarThatBrakesUnseenWithoutWheels) {
   const auto place = test::synthetic_place(9);
   const LandmarkIndex index(place.map);
-  Drive drive;
+  RingDrive drive;
   drive.has_wheels = false;
   drive.frames = 110;
   static constexpr int kDark = 40;
   static constexpr int kGoesOn = 66;
   drive.way_m = [](int i) {  // stops at once
-    return kStep * (std::min(i, kDark) + std::max(0, i - kGoesOn));
+    return kFrameStep * (std::min(i, kDark) + std::max(0, i - kGoesOn));
   };
   drive.change = [](int i, std::vector<Features>& all) {
     if (i >= kDark && i < kDark + 25)
@@ -274,12 +274,12 @@ TEST(Localiser, WheelsThatAreStuckAreLeftOut) {
   int fixes = 0;
   constexpr int kFrames = 110;
   for (int i = 0; i < kFrames; ++i) {
-    const Eigen::Isometry3d T = test::ring_pose(kRadius, kStep * i);
+    const Eigen::Isometry3d T = test::ring_pose(kRadius, kFrameStep * i);
     LocaliserFrame frame;
     frame.t_ns = i * 80'000'000LL;
     frame.features = test::synthetic_features(place, T, random);
     const bool is_stuck = i > 40 && i <= 65;
-    const Eigen::Isometry3d before = is_stuck ? T : test::ring_pose(kRadius, kStep * (i - 1));
+    const Eigen::Isometry3d before = is_stuck ? T : test::ring_pose(kRadius, kFrameStep * (i - 1));
     if (i > 0) frame.wheels = test::synthetic_wheels(before, T, random);
     const LocalisedFrame pose = localiser.add(std::move(frame));
     if (pose.status != LocalisationStatus::kLocalised) continue;
@@ -299,12 +299,13 @@ TEST(Localiser, WheelsThatTurnTheCarAreLeftOut) {
   int fixes = 0;
   constexpr int kFrames = 60;
   for (int i = 0; i < kFrames; ++i) {
-    const Eigen::Isometry3d T = test::ring_pose(kRadius, kStep * i);
+    const Eigen::Isometry3d T = test::ring_pose(kRadius, kFrameStep * i);
     LocaliserFrame frame;
     frame.t_ns = i * 80'000'000LL;
     frame.features = test::synthetic_features(place, T, random);
     if (i > 0) {
-      frame.wheels = test::synthetic_wheels(test::ring_pose(kRadius, kStep * (i - 1)), T, random);
+      frame.wheels =
+          test::synthetic_wheels(test::ring_pose(kRadius, kFrameStep * (i - 1)), T, random);
       frame.wheels->motion.z() -= 0.1;
     }
     const LocalisedFrame pose = localiser.add(std::move(frame));
@@ -324,12 +325,13 @@ TEST(Localiser, AWrongStartIsForgotten) {
   Random random(1, "wrong start");
   LocalisedFrame last;
   for (int i = 0; i < 60; ++i) {
-    const Eigen::Isometry3d T = test::ring_pose(kRadius, kStep * i);
+    const Eigen::Isometry3d T = test::ring_pose(kRadius, kFrameStep * i);
     LocaliserFrame frame;
     frame.t_ns = i * 80'000'000LL;
     frame.features = test::synthetic_features(place, T, random);
     if (i > 0)
-      frame.wheels = test::synthetic_wheels(test::ring_pose(kRadius, kStep * (i - 1)), T, random);
+      frame.wheels =
+          test::synthetic_wheels(test::ring_pose(kRadius, kFrameStep * (i - 1)), T, random);
     last = localiser.add(std::move(frame));
     EXPECT_TRUE(last.status == LocalisationStatus::kLost || i > 25) << i;
   }

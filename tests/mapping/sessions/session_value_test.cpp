@@ -15,9 +15,9 @@
 namespace roadbook {
 namespace {
 
-constexpr double kStepM = 1.5;
+constexpr double kRingStepM = 1.5;
 constexpr double kReachM = 7.0;
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kRingDegree = std::numbers::pi / 180.0;
 
 enum class JoinedBy { kLoops, kLandmarks };
 
@@ -25,7 +25,7 @@ enum class JoinedBy { kLoops, kLandmarks };
 // the third drives as far beside the first.
 class RingMap {
  public:
-  RingMap(std::uint64_t seed, JoinedBy joined_by, double step_m = kStepM)
+  RingMap(std::uint64_t seed, JoinedBy joined_by, double step_m = kRingStepM)
       : random_(seed, "ring map"),
         radius_m_(random_.uniform(14.0, 22.0)),
         joined_by_(joined_by),
@@ -52,9 +52,9 @@ class RingMap {
     session.scale_source = ScaleSource::kWheels;
     const int s = static_cast<int>(map_.sessions.size());
     map_.sessions.push_back(session);
-    const double end_m = to_deg * kDegree * radius_m_;
+    const double end_m = to_deg * kRingDegree * radius_m_;
     bool is_first = true;
-    for (double along = from_deg * kDegree * radius_m_; along < end_m; along += step_m_) {
+    for (double along = from_deg * kRingDegree * radius_m_; along < end_m; along += step_m_) {
       const Eigen::Isometry3d T = test::ring_pose(radius_m_, along, left_m);
       Keyframe keyframe;
       keyframe.session = s;
@@ -71,7 +71,7 @@ class RingMap {
   }
   void close_loop(int k) {
     int nearest = -1;
-    double least = kStepM;
+    double least = kRingStepM;
     for (int other = 0; map_.keyframes[at(other)].session == 0; ++other) {
       const Eigen::Isometry3d T = map_.T_map_vehicle(other).inverse() * map_.T_map_vehicle(k);
       if (T.translation().norm() < least) {
