@@ -69,6 +69,7 @@ function(roadbook_test name)
     return()
   endif()
   add_executable(test_${name} ${ARG_SOURCES})
+  set(ROADBOOK_UNITY_SMALL 0)  # folders of tests stay apart: names in functions of some hide those of others
   roadbook_unity_groups(${ARG_SOURCES})
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR})
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} roadbook_test_support roadbook_flags
