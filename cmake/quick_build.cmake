@@ -1,5 +1,5 @@
 # Most of the time of a build is reading headers and instantiating the same templates again. So common
-# headers are parsed once, and up to 16 files of one folder are compiled together. Every file still
+# headers are parsed once, and up to 24 files of one folder are compiled together. Every file still
 # includes what it needs: with a compiler cache (which would not keep such objects) or clang-tidy, each
 # is compiled alone. Names in anonymous namespaces must differ within a folder of a target (tests/layout
 # checks it).
@@ -14,7 +14,8 @@ endif()
 
 set(CMAKE_UNITY_BUILD ON)
 set(CMAKE_UNITY_BUILD_MODE GROUP)
-set(ROADBOOK_UNITY_FILES 16 CACHE STRING "Files compiled together, at most")
+# 24 instead of 16 save a seventh of the time of the folders that become one group, and take up to 3.5 GB.
+set(ROADBOOK_UNITY_FILES 24 CACHE STRING "Files compiled together, at most")
 set(ROADBOOK_UNITY_SMALL 8 CACHE STRING "Files of a folder that is compiled together with other small ones, at most")
 
 # roadbook_unity_groups(SOURCES...): groups sources of the calling folder, up to ROADBOOK_UNITY_FILES
