@@ -52,8 +52,9 @@ void estimate_correlation(const std::vector<double>& z,
 
 // The spatial bias: its correlation length from a short list, its size by maximum likelihood.
 FrictionGram::Fit estimate_place(const FrictionGram& gram,
-                                 const PlaceCells& cells,
+                                 PlaceBases& bases,
                                  FrictionNoise& noise) {
+  const PlaceCells& cells = bases.cells();
   const FrictionGram::Fit without = gram.fit(Eigen::MatrixXd(cells.centres.size(), 0), 0.0);
   noise.place_sd = noise.place_sigma = 0.0;
   noise.place_terms.resize(0, 0);
@@ -61,7 +62,7 @@ FrictionGram::Fit estimate_place(const FrictionGram& gram,
   FrictionGram::Fit best = without;
   if (cells.centres.size() < 5) return best;
   for (const double length : {2.0, 4.0, 8.0, 16.0}) {
-    const Eigen::MatrixXd basis = place_basis(cells, length * cells.size_m);
+    const Eigen::MatrixXd& basis = bases.of_length(length * cells.size_m);
     const FrictionGram::Basis products(gram, basis);
     const auto at = [&](double log_size) { return products.fit(std::exp(log_size)); };
     double low = std::log(5e-4);
@@ -112,17 +113,18 @@ void measure_places(const PlaceCells& cells, const Eigen::VectorXd& bias, Fricti
 }  // namespace
 
 FrictionNoise friction_noise(const std::vector<FrictionSample>& samples,
-                             const PlaceCells& cells,
+                             PlaceBases& bases,
                              const FrictionMean& mean,
                              Eigen::Index flat,
                              bool places) {
+  const PlaceCells& cells = bases.cells();
   FrictionNoise noise;
   noise.outlier_part.assign(samples.size(), 0.0);
   for (int iteration = 0; iteration < 4; ++iteration) {
     const FrictionGram gram(samples, cells, mean, flat, noise);
     FrictionGram::Fit fit;
     if (places && iteration > 0) {
-      fit = estimate_place(gram, cells, noise);
+      fit = estimate_place(gram, bases, noise);
     } else {
       fit = gram.fit(Eigen::MatrixXd(cells.centres.size(), 0), 0.0);
     }

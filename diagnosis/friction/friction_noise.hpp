@@ -12,7 +12,7 @@ namespace roadbook {
 /// standard normal prior. A part of the noise enters the model only if the likelihood clearly
 /// supports it. The spatial bias is estimated only if `places`.
 [[nodiscard]] FrictionNoise friction_noise(const std::vector<FrictionSample>& samples,
-                                           const PlaceCells& cells,
+                                           PlaceBases& bases,
                                            const FrictionMean& mean,
                                            Eigen::Index flat,
                                            bool places = true);

@@ -29,7 +29,7 @@ FrictionNoise FrictionProblem::noise_beside(const std::vector<Candidate>& discs,
     split.col(d) = friction_columns(readings_, classes_, discs[static_cast<std::size_t>(d)]);
   split.rightCols(mean.cols()) = mean;
   const auto flat = count + static_cast<Index>(classes_.labels.size());
-  FrictionNoise noise = friction_noise(readings_.samples, cells_, split, flat, places);
+  FrictionNoise noise = friction_noise(readings_.samples, *bases_, split, flat, places);
   // Readings on another surface look like outliers until it has its own mean.
   if (discs.empty() && !places) noise.outlier_part.assign(readings_.samples.size(), 0.0);
   return noise;

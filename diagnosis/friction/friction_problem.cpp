@@ -29,6 +29,7 @@ FrictionProblem::FrictionProblem(FrictionReadings readings, LibraryOptions libra
   std::vector<Eigen::Vector2d> places;
   for (const FrictionSample& s : readings_.samples) places.emplace_back(s.x, s.y);
   cells_ = place_cells(places);
+  bases_ = std::make_shared<PlaceBases>(cells_);
   noise_ = nominal_noise();
 }
 
@@ -128,7 +129,7 @@ std::vector<NoiseCause> FrictionProblem::noise_causes(const CauseModel& model) c
     mean.rightCols(columns.cols()) = columns;
   }
   const FrictionNoise noise =
-      friction_noise(readings_.samples, cells_, mean, mean.cols(), library_.places);
+      friction_noise(readings_.samples, *bases_, mean, mean.cols(), library_.places);
   FrictionMean residual(mean.rows(), 1);
   for (Index i = 0; i < mean.rows(); ++i)
     residual(i, 0) =

@@ -53,6 +53,7 @@ class FrictionProblem final : public CauseProblem {
   LibraryOptions library_;
   SurfaceClasses classes_;
   PlaceCells cells_;
+  std::shared_ptr<PlaceBases> bases_;
   FrictionNoise noise_;
 };
 

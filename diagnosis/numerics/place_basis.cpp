@@ -63,4 +63,11 @@ Eigen::MatrixXd place_basis(const PlaceCells& cells, double length_m, std::size_
   return basis;
 }
 
+const Eigen::MatrixXd& PlaceBases::of_length(double length_m) {
+  const std::lock_guard lock(asked_);
+  const auto found = known_.find(length_m);
+  if (found != known_.end()) return found->second;
+  return known_.emplace(length_m, place_basis(cells_, length_m)).first->second;
+}
+
 }  // namespace roadbook

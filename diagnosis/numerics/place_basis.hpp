@@ -2,6 +2,9 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <map>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 namespace roadbook {
@@ -25,5 +28,20 @@ struct PlaceCells {
 [[nodiscard]] Eigen::MatrixXd place_basis(const PlaceCells& cells,
                                           double length_m,
                                           std::size_t most = 120);
+
+/// The functions of one place for the lengths that were asked for. Each takes an
+/// eigendecomposition, and a search for noise asks for the same ones dozens of times. Any number of
+/// threads may ask.
+class PlaceBases {
+ public:
+  explicit PlaceBases(PlaceCells cells) : cells_(std::move(cells)) {}
+  [[nodiscard]] const PlaceCells& cells() const { return cells_; }
+  [[nodiscard]] const Eigen::MatrixXd& of_length(double length_m);
+
+ private:
+  PlaceCells cells_;
+  std::mutex asked_;
+  std::map<double, Eigen::MatrixXd> known_;
+};
 
 }  // namespace roadbook
