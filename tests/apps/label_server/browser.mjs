@@ -44,12 +44,31 @@ function freePort() {
   });
 }
 
-/** Runs `test({page, spaces, server, browser, makeLot})` with everything it needs, and cleans up. */
-export async function withPage(test, lot = []) {
+let started;
+let keeps = false;
+
+/** Tests of this process share one browser, until it is closed: its start takes as long as many a test. */
+export function keepBrowser() {
+  keeps = true;
+}
+
+async function sharedBrowser() {
   const chromium = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
   if (!chromium) skip('there is no chromium');
   if (!existsSync(join(pageFolder, 'node_modules/playwright-core'))) skip('the page was not built');
   const { chromium: launcher } = createRequire(`${pageFolder}/`)('playwright-core');
+  started ??= await launcher.launch({ executablePath: chromium, args: kFlags });
+  return started;
+}
+
+export async function closeBrowser() {
+  await started?.close();
+  started = undefined;
+}
+
+/** Runs `test({page, spaces, server, browser, makeLot})` with everything it needs, and cleans up. */
+export async function withPage(test, lot = []) {
+  const browser = await sharedBrowser();
   const folder = mkdtempSync(join(tmpdir(), 'label_page_'));
   const map = join(folder, 'lot.gpkg');
   const made = spawnSync(makeLot, [map, ...lot], { encoding: 'utf8' });
@@ -61,11 +80,9 @@ export async function withPage(test, lot = []) {
   const server = new Server(map, await freePort(), join(folder, 'token'));
   process.on('exit', () => server.process?.kill('SIGKILL'));
   for (const signal of ['SIGTERM', 'SIGINT']) process.on(signal, () => process.exit(1));
-  let browser;
   let page;
   try {
     await server.start();
-    browser = await launcher.launch({ executablePath: chromium, args: kFlags });
     page = await (await browser.newContext({ viewport: { width: 1400, height: 900 } })).newPage();
     page.on('pageerror', (fault) => {
       console.log(`error in the page: ${fault.message}`);
@@ -78,7 +95,8 @@ export async function withPage(test, lot = []) {
     if (page) console.log('the page said:', await page.textContent('#hint'), '|', await page.textContent('#status'));
     throw fault;
   } finally {
-    await browser?.close();
+    for (const context of browser.contexts()) await context.close();
+    if (!keeps) await closeBrowser();
     await server.kill('SIGKILL');
     rmSync(folder, { recursive: true, force: true });
   }
