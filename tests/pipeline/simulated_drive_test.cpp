@@ -235,7 +235,7 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
   {
     SCOPED_TRACE("killed");
     const auto copy = linked_copy(drive_folder, folder / "short");
-    shorten(copy, 0.33);
+    shorten(copy, 0.25);
     survives_a_kill(folder, copy);
   }
   // A round and the beginning of the next.

@@ -15,6 +15,7 @@
 #include "base/temporary_folder.hpp"
 #include "mapping/store/map_file.hpp"
 #include "sim/simulate.hpp"
+#include "tests/pipeline/shared_round.hpp"
 #include "workflows/map_drives.hpp"
 
 namespace roadbook {
@@ -147,9 +148,7 @@ TEST(Robustness, ADamagedDriveMakesARightMapOrNoneOrIsNamed) {
 TEST(Robustness, NoLandmarkStaysOnMovingThings) {
   const TemporaryFolder folder;
   const fs::path drive = folder.path() / "drive";
-  SimulateOptions options;
-  options.max_duration_s = 12.0;
-  simulate(load_scenario("zurich", {.size = "small", .image_scale = 0.5}), drive, options);
+  test::give_beginning_of_round(12.0, drive);
   Random random(1);
   (void)fault_named("cameras: moving things over half the view").plant(drive, random);
   MapRequest request;
