@@ -155,7 +155,12 @@ DiagnosisStudyOptions study_options(const EvaluateCommand& command) {
   options.lasting_drives = 40 * options.drives_an_effect / 3;
   options.pair_drives = 20 * options.drives_an_effect / 3;
   options.removed_an_effect = (options.drives_an_effect + 9) / 10;
-  if (command.quick) options.length_m = 150.0;
+  if (command.quick) {
+    options.length_m = 150.0;
+    for (std::size_t* drives :
+         {&options.null_drives, &options.lasting_drives, &options.pair_drives})
+      *drives = (*drives + 2) / 3;
+  }
   return options;
 }
 
