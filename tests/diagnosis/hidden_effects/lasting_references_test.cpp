@@ -26,16 +26,15 @@ Outcome with_radius(double time_s, double radius, std::uint64_t index) {
 }
 
 // `hidden_effects_study lasting` finds 0 alarms of 72 drives at 0.3 and 1 s and about one of thirty
-// at 10 s, so that two of these eight are rare.
+// at 10 s, so that two of these four are rare.
 TEST(LastingReferences, RaiseNoAlarm) {
   int alarms = 0;
-  for (const double time_s : {0.3, 1.0, 3.0, 10.0})
-    for (std::uint64_t i = 0; i < 2; ++i) {
-      const Outcome o = with_radius(time_s, 0.0, i);
-      if (o.found.causes.empty() && o.found.unknown.empty()) continue;
-      ++alarms;
-      std::cout << "alarm: " << o.to_line() << "\n";
-    }
+  for (const double time_s : {0.3, 1.0, 3.0, 10.0}) {
+    const Outcome o = with_radius(time_s, 0.0, 0);
+    if (o.found.causes.empty() && o.found.unknown.empty()) continue;
+    ++alarms;
+    std::cout << "alarm: " << o.to_line() << "\n";
+  }
   EXPECT_LE(alarms, 1);
 }
 

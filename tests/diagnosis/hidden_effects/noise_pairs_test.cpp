@@ -58,9 +58,12 @@ TEST(NoisePairs, OfOneStreamAreBothNamed) {
 }
 
 TEST(NoisePairs, OfWhichThereIsOneOnlyThatIsNamed) {
+  std::set<std::string> tried;
   for (const Secret& both : pairs())
-    for (const auto& [effect, size] : both)
+    for (const auto& [effect, size] : both) {
+      if (!tried.insert(effect).second) continue;
       EXPECT_EQ(names_of(noise_of(2032, {{effect, size}})), std::set<std::string>{effect});
+    }
   // With strongly correlated readings two or three give as much information as eight.
   for (const std::uint64_t seed : {2034U, 2035U, 2036U})
     EXPECT_EQ(names_of(noise_of(seed, {{"imu0.correlation", 0.9}})),

