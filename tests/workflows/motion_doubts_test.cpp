@@ -87,7 +87,7 @@ TEST(MotionDoubts, OfImagesThatTheModelKnowsToBeLateSayNothingOfTheWheels) {
 }
 
 TEST(MotionDoubts, OfASoundDriveOrAnotherDriveSayNothing) {
-  for (std::uint64_t i = 0; i < 6; ++i) {
+  for (std::uint64_t i = 0; i < 3; ++i) {
     const test::TemporaryFolder folder;
     const Mapped m = mapped(drive_with("", 0.0, i), folder.path() / "drive");
     for (const Problem& p : motion_doubts(m.map, m.drive, {})) ADD_FAILURE() << to_line(p);

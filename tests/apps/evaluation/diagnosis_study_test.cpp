@@ -73,7 +73,7 @@ TEST(DiagnosisStudy, StrongEffectsAreNamedAndThreadsDoNotMatter) {
 // smaller slip, it underestimates by a quarter the standard errors of the sensor's rotation and
 // position.
 TEST(DiagnosisStudy, HowTheCarCreepsSidewaysIsToldFromThePoses) {
-  constexpr int kDrives = 12;
+  constexpr int kDrives = 8;
   double mean = 0.0;
   for (int i = 0; i < kDrives; ++i) {
     const test::TemporaryFolder folder;
@@ -151,19 +151,17 @@ TEST(DiagnosisStudy, ALongDelayOfPosesIsOneNameNotTwoTermsAlsoBesideAnotherCause
 // drift, the gain is a quarter smaller.
 TEST(DiagnosisStudy, AClockThatDriftsGainsWhatOneWhoKnowsItWouldGain) {
   const EffectSizes hidden{{"clock.drift", 9e-5}};
-  for (const std::uint64_t seed : {1U, 2U}) {
-    const test::TemporaryFolder folder;
-    write_hidden_drive(folder.path() / "drive", seed, 300.0, hidden);
-    DriveOptions options;
-    options.num_threads = 1;
-    const MotionStreams streams = motion_streams(Drive::open(folder.path() / "drive", options));
-    const Diagnosis found = diagnose(streams, "drive");
-    ASSERT_EQ(found.causes.size(), 1U);
-    EXPECT_EQ(found.causes[0].effect, "clock.drift");
-    const double known = ask_oracle(streams, hidden).gain;
-    EXPECT_GT(found.causes[0].gain.total, 0.93 * known);
-    EXPECT_LT(found.causes[0].gain.total, 1.03 * known);
-  }
+  const test::TemporaryFolder folder;
+  write_hidden_drive(folder.path() / "drive", 1, 300.0, hidden);
+  DriveOptions options;
+  options.num_threads = 1;
+  const MotionStreams streams = motion_streams(Drive::open(folder.path() / "drive", options));
+  const Diagnosis found = diagnose(streams, "drive");
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_EQ(found.causes[0].effect, "clock.drift");
+  const double known = ask_oracle(streams, hidden).gain;
+  EXPECT_GT(found.causes[0].gain.total, 0.93 * known);
+  EXPECT_LT(found.causes[0].gain.total, 1.03 * known);
 }
 
 }  // namespace
