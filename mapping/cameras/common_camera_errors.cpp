@@ -21,13 +21,14 @@ std::optional<Eigen::Vector2d> predicted(const MountedCamera& mounted,
 }
 
 // Adds what the errors of one camera do to the pixels that it saw.
-void add_shift(const CameraDoubt& doubt,
+void add_shift(int session,
+               int number,
                const CameraErrors& errors,
                const KeyframeMotion& motion,
                const BundleStage& stage,
                CommonError& shift) {
   const BundleProblem& problem = stage.problem;
-  const int camera = stage.camera_base[at(doubt.session)] + doubt.camera;
+  const int camera = stage.camera_base[at(session)] + number;
   const MountedCamera& mounted = problem.cameras[at(camera)];
   shift.pixels.resize(problem.observations.size(), Eigen::Vector2d::Zero());
   for (std::size_t o = 0; o < problem.observations.size(); ++o) {
@@ -56,13 +57,22 @@ std::vector<CommonError> common_errors_of(const std::vector<CameraDoubt>& doubts
   for (const CameraDoubt& doubt : doubts) {
     for (const CameraErrors& named : doubt.errors) {
       errors.emplace_back();
-      add_shift(doubt, named, motion, stage, errors.back());
+      add_shift(doubt.session, doubt.camera, named, motion, stage, errors.back());
     }
     if (doubt.errors.empty()) continue;
-    add_shift(doubt, doubt.errors.front(), motion, stage, together);
+    add_shift(doubt.session, doubt.camera, doubt.errors.front(), motion, stage, together);
     ++cameras;
   }
   if (cameras > 1) errors.push_back(std::move(together));
+  CameraErrors longer = CameraErrors::Zero();
+  longer[range_of(CameraParameter::kFocal).first] = 0.01;
+  for (std::size_t s = 0; s < input.half_rigs.size(); ++s) {
+    CommonError all;
+    all.suspected = false;
+    for (std::size_t c = 0; c < input.half_rigs[s].cameras.size(); ++c)
+      add_shift(static_cast<int>(s), static_cast<int>(c), longer, motion, stage, all);
+    errors.push_back(std::move(all));
+  }
   return errors;
 }
 

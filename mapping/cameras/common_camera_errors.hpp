@@ -9,7 +9,9 @@ namespace roadbook {
 /// What the doubts about cameras would do to the predicted pixels of an adjusted problem: one
 /// common error for each parameter that a doubt names, of the size that it names. Where several
 /// cameras are doubted, one more holds the likeliest parameters of all, as a wrong lens of all
-/// cameras would be. Doubts without a parameter (repeated or exchanged images) give none.
+/// cameras would be. Doubts without a parameter (repeated or exchanged images) give none. One more
+/// for each session, which counts if the residuals show it: all its focal lengths wrong by one
+/// factor. Its cameras do not contradict each other, so no doubt need name it.
 [[nodiscard]] std::vector<CommonError> common_errors_of(const std::vector<CameraDoubt>& doubts,
                                                         const MappingInput& input,
                                                         const BundleStage& stage);

@@ -20,6 +20,9 @@ struct ClusterOptions {
 /// An error that all pixels of a camera may share, as a shift of every predicted pixel.
 struct CommonError {
   std::vector<Eigen::Vector2d> pixels;  ///< of each observation of the problem [px]
+  /// Something else speaks for it, so it counts with at least this size. Otherwise it counts only
+  /// if the residuals show it, and with the size that they show.
+  bool suspected = true;
 };
 
 }  // namespace roadbook

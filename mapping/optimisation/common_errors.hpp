@@ -15,13 +15,14 @@ namespace roadbook {
 // The suspect may be found with poses that have already absorbed a part of it. So s is the size
 // that explains the residuals best while poses and points are free (score test, Rao 1948),
 //   s = e~^T r / (e~^T e~),   e~ = e - J H^-1 J^T e,
-// but at least 1, the stated size.
+// but at least 1, the stated size. An error that nothing else speaks for counts if s is beyond four
+// of its standard deviations, with the landmarks' parts of e~^T r as independent.
 
 /// How far the poses and the free scales move because of a common error.
 struct CommonMove {
   Eigen::VectorXd poses;   ///< six rows for each pose variable
   Eigen::VectorXd scales;  ///< of each free scale
-  double size = 1.0;       ///< s
+  double size = 1.0;       ///< s; 0: the error does not count
 };
 
 /// One move for each error, times its size. `system`: just solved with lambda 0. Costs one

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "mapping/cameras/common_camera_errors.hpp"
 #include "mapping/pipeline/landmark_covariance.hpp"
 #include "mapping/pipeline/track_agreement.hpp"
 
@@ -244,7 +245,7 @@ Adjusted adjust_session(const JoinedSession& joined,
 }
 
 void add_covariances_of_session(const JoinedSession& joined,
-                                const std::vector<CommonError>& suspected,
+                                std::vector<CameraDoubt> doubts,
                                 const MapOptions& options,
                                 Adjusted& adjusted) {
   if (!options.covariances) return;
@@ -257,7 +258,10 @@ void add_covariances_of_session(const JoinedSession& joined,
   relaxed.component = joined.piece;
   adjusted.stage.problem.priors.clear();  // the gauge of covariances is the first keyframe
   for (BundlePose& pose : adjusted.stage.problem.poses) pose.fixed = false;
-  add_covariances(joined.input, relaxed, suspected, options, adjusted);
+  for (CameraDoubt& doubt : doubts)
+    doubt.session = static_cast<int>(joined.input.half_rigs.size()) - 1;
+  add_covariances(joined.input, relaxed, common_errors_of(doubts, joined.input, adjusted.stage),
+                  options, adjusted);
 }
 
 std::string gauge_of(SessionAdjust adjust) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mapping/cameras/camera_doubts.hpp"
 #include "mapping/pipeline/map_stages.hpp"
 #include "mapping/sessions/join_session.hpp"
 
@@ -26,9 +27,10 @@ namespace roadbook {
                                       const Progress& progress);
 
 /// Adds covariances, if `options` want them: of everything after SessionAdjust::kAll, else of the
-/// landmarks that the session sees or has moved. `suspected`: errors of cameras that widen them.
+/// landmarks that the session sees or has moved. `doubts`: of the
+/// last session's cameras, which widen them (common_camera_errors.hpp).
 void add_covariances_of_session(const JoinedSession& joined,
-                                const std::vector<CommonError>& suspected,
+                                std::vector<CameraDoubt> doubts,
                                 const MapOptions& options,
                                 Adjusted& adjusted);
 

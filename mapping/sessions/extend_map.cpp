@@ -6,7 +6,6 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "mapping/cameras/common_camera_errors.hpp"
 #include "mapping/localisation/landmark_index.hpp"
 #include "mapping/pieces.hpp"
 #include "mapping/pipeline/drive_steps.hpp"
@@ -151,8 +150,7 @@ void extend_from(const std::vector<Drive>& drives,  // one
 
   const auto suspects = clock.run("cameras", [&] {
     const Adjusted alone = session_alone(joined, adjusted);
-    const auto found = judge_cameras(input, drives, alone, gate, options, summary);
-    return common_errors_of(found, input, alone.stage);
+    return judge_cameras(input, drives, alone, gate, options, summary);
   });
   clock.run("covariances", [&] {
     add_covariances_of_session(joined, suspects, options, adjusted);
