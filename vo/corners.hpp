@@ -19,12 +19,9 @@ namespace roadbook {
 /// `image` is 8-bit grey.
 [[nodiscard]] std::vector<cv::KeyPoint> find_corners(const cv::Mat& image, int threshold);
 
-/// Returns the sub-pixel position of a corner: where the edges around it meet, or the middle of a
-/// round spot, whichever leaves less (Foerstner and Guelch 1987), held by a fifth of the gradients
-/// at the strongest point, the peak of a parabola through the strengths of 3 x 3 pixels
-/// (Leutenegger, Chli, Siegwart 2011, section 3.1). The strongest point alone lies inside the
-/// corner by part of a pixel, whatever the corner's distance: an error that all views share, which
-/// tilts maps. It is returned near the image's border, and where the result is more than 2 px away.
+/// Returns the sub-pixel position of a corner: the peak of the parabola through the strengths of
+/// the 3 x 3 pixels around it, at most one pixel away (Leutenegger, Chli, Siegwart 2011, section
+/// 3.1).
 [[nodiscard]] cv::Point2f refine_corner(const cv::Mat& image, const cv::Point2f& corner);
 
 }  // namespace roadbook
