@@ -8,6 +8,11 @@
 namespace roadbook {
 namespace {
 
+// How much higher corners lie than what they show, half-size image. The strongest point lies inside
+// a corner, and more corners open downwards. By the true poses, 16 cameras of four simulated drives
+// said 0.09 to 0.21; adjusted poses absorb nearly all of it.
+constexpr double kCornersTooHighPx = 0.15;
+
 // Pixel of a point by a camera with errors (half-size image); empty where it cannot see the point.
 std::optional<Eigen::Vector2d> predicted(const MountedCamera& mounted,
                                          const CameraErrors& errors,
@@ -64,14 +69,21 @@ std::vector<CommonError> common_errors_of(const std::vector<CameraDoubt>& doubts
     ++cameras;
   }
   if (cameras > 1) errors.push_back(std::move(together));
+  const auto add_of_all_cameras = [&](std::size_t session, const CameraErrors& shared,
+                                      CommonErrorSize size) {
+    CommonError all;
+    all.size = size;
+    for (std::size_t c = 0; c < input.half_rigs[session].cameras.size(); ++c)
+      add_shift(static_cast<int>(session), static_cast<int>(c), shared, motion, stage, all);
+    errors.push_back(std::move(all));
+  };
   CameraErrors longer = CameraErrors::Zero();
   longer[range_of(CameraParameter::kFocal).first] = 0.01;
+  CameraErrors lower = CameraErrors::Zero();
+  lower[range_of(CameraParameter::kCentre).first + 1] = kCornersTooHighPx;
   for (std::size_t s = 0; s < input.half_rigs.size(); ++s) {
-    CommonError all;
-    all.suspected = false;
-    for (std::size_t c = 0; c < input.half_rigs[s].cameras.size(); ++c)
-      add_shift(static_cast<int>(s), static_cast<int>(c), longer, motion, stage, all);
-    errors.push_back(std::move(all));
+    add_of_all_cameras(s, longer, CommonErrorSize::kIfShown);
+    add_of_all_cameras(s, lower, CommonErrorSize::kKnown);
   }
   return errors;
 }

@@ -17,12 +17,17 @@ struct ClusterOptions {
   void check() const;
 };
 
+/// With which size a common error counts; `pixels` are of size 1.
+enum class CommonErrorSize {
+  kAtLeast,  ///< 1, or more where the residuals say so: something else speaks for it
+  kIfShown,  ///< that of the residuals, if they show it
+  kKnown,    ///< 1: the residuals cannot tell
+};
+
 /// An error that all pixels of a camera may share, as a shift of every predicted pixel.
 struct CommonError {
   std::vector<Eigen::Vector2d> pixels;  ///< of each observation of the problem [px]
-  /// Something else speaks for it, so it counts with at least this size. Otherwise it counts only
-  /// if the residuals show it, and with the size that they show.
-  bool suspected = true;
+  CommonErrorSize size = CommonErrorSize::kAtLeast;
 };
 
 }  // namespace roadbook

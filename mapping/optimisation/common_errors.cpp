@@ -82,15 +82,22 @@ std::vector<CommonMove> moves_of(const ClusterData& data,
   const Sizes sizes = sizes_of(data, errors, moves);
   std::vector<CommonMove> result;
   for (Eigen::Index e = 0; e < count; ++e) {
-    constexpr double kSigmas = 4.0;
+    constexpr double kSigmas = 6.0;  // one of three drives with right lenses had 4
     const bool shows = sizes.squares[e] > 1e-9 * squares[e];  // the poses do not hide all of it
     const double size = shows ? std::abs(sizes.products[e]) / sizes.squares[e] : 0.0;
     const bool sure = std::abs(sizes.products[e]) > kSigmas * std::sqrt(sizes.variances[e]);
     CommonMove move;
-    if (errors[at(static_cast<int>(e))].suspected)
-      move.size = std::max(1.0, size);
-    else
-      move.size = sure ? size : 0.0;
+    switch (errors[static_cast<std::size_t>(e)].size) {
+      case CommonErrorSize::kAtLeast:
+        move.size = std::max(1.0, size);
+        break;
+      case CommonErrorSize::kIfShown:
+        move.size = sure ? size : 0.0;
+        break;
+      case CommonErrorSize::kKnown:
+        move.size = 1.0;
+        break;
+    }
     move.poses = move.size * moves.col(e);
     move.scales = move.size * scales.col(e);
     result.push_back(std::move(move));

@@ -15,8 +15,9 @@ namespace roadbook {
 // The suspect may be found with poses that have already absorbed a part of it. So s is the size
 // that explains the residuals best while poses and points are free (score test, Rao 1948),
 //   s = e~^T r / (e~^T e~),   e~ = e - J H^-1 J^T e,
-// but at least 1, the stated size. An error that nothing else speaks for counts if s is beyond four
-// of its standard deviations, with the landmarks' parts of e~^T r as independent.
+// but at least 1, the stated size. An error that nothing else speaks for counts if s is beyond six
+// of its standard deviations, with the landmarks' parts of e~^T r as independent. One that is known
+// counts as stated.
 
 /// How far the poses and the free scales move because of a common error.
 struct CommonMove {

@@ -23,7 +23,7 @@ BundleOptions plain_options() {
 // All pixels 1 % farther from the optical axis, as longer focal lengths of all cameras make them.
 CommonError longer_focal_lengths(const BundleProblem& problem) {
   CommonError error;
-  error.suspected = false;
+  error.size = CommonErrorSize::kIfShown;
   for (const BundleObservation& seen : problem.observations)
     error.pixels.push_back(
         0.01 * (seen.pixel -
