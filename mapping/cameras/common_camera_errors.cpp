@@ -8,9 +8,9 @@
 namespace roadbook {
 namespace {
 
-// How much higher corners lie than what they show, half-size image. The strongest point lies inside
+// How much higher corners lie than their objects, half-size image. The strongest point lies inside
 // a corner, and more corners open downwards. By the true poses, 16 cameras of four simulated drives
-// said 0.09 to 0.21; adjusted poses absorb nearly all of it.
+// said 0.09 to 0.21; adjusted poses absorb nearly everything.
 constexpr double kCornersTooHighPx = 0.15;
 
 // Pixel of a point by a camera with errors (half-size image); empty where it cannot see the point.

@@ -12,7 +12,7 @@ namespace roadbook {
 /// cameras would be. Doubts without a parameter (repeated or exchanged images) give none. Two more
 /// for each session, in which its cameras do not contradict each other, so that no doubt need name
 /// them: all focal lengths wrong by one factor, which counts if the residuals show it, and the
-/// height by which corners lie above what they show, which always counts.
+/// height by which corners lie above their objects, which always counts.
 [[nodiscard]] std::vector<CommonError> common_errors_of(const std::vector<CameraDoubt>& doubts,
                                                         const MappingInput& input,
                                                         const BundleStage& stage);
