@@ -69,22 +69,24 @@ std::vector<CommonError> common_errors_of(const std::vector<CameraDoubt>& doubts
     ++cameras;
   }
   if (cameras > 1) errors.push_back(std::move(together));
-  const auto add_of_all_cameras = [&](std::size_t session, const CameraErrors& shared,
-                                      CommonErrorSize size) {
-    CommonError all;
-    all.size = size;
-    for (std::size_t c = 0; c < input.half_rigs[session].cameras.size(); ++c)
-      add_shift(static_cast<int>(session), static_cast<int>(c), shared, motion, stage, all);
-    errors.push_back(std::move(all));
-  };
   CameraErrors longer = CameraErrors::Zero();
   longer[range_of(CameraParameter::kFocal).first] = 0.01;
   CameraErrors lower = CameraErrors::Zero();
   lower[range_of(CameraParameter::kCentre).first + 1] = kCornersTooHighPx;
+  CommonError corners;  // of one sign in all sessions: more of them do not average it out
+  corners.size = CommonErrorSize::kKnown;
   for (std::size_t s = 0; s < input.half_rigs.size(); ++s) {
-    add_of_all_cameras(s, longer, CommonErrorSize::kIfShown);
-    add_of_all_cameras(s, lower, CommonErrorSize::kKnown);
+    const std::size_t count = input.half_rigs[s].cameras.size();
+    if (count == 0) continue;
+    CommonError focal;
+    focal.size = CommonErrorSize::kIfShown;
+    for (std::size_t c = 0; c < count; ++c) {
+      add_shift(static_cast<int>(s), static_cast<int>(c), longer, motion, stage, focal);
+      add_shift(static_cast<int>(s), static_cast<int>(c), lower, motion, stage, corners);
+    }
+    errors.push_back(std::move(focal));
   }
+  if (!corners.pixels.empty()) errors.push_back(std::move(corners));
   return errors;
 }
 
