@@ -1,6 +1,8 @@
 #include "mapping/cameras/common_camera_errors.hpp"
 
+#include <map>
 #include <optional>
+#include <vector>
 
 #include "base/index.hpp"
 #include "mapping/cameras/principal_point.hpp"
@@ -48,6 +50,17 @@ void add_shift(int session,
   }
 }
 
+// Numbers that are the same for rigs whose cameras have the same model and intrinsics.
+std::vector<double> calibration_of(const Rig& rig) {
+  std::vector<double> numbers;
+  for (const MountedCamera& mounted : rig.cameras) {
+    numbers.push_back(static_cast<double>(mounted.camera.model));
+    numbers.insert(numbers.end(), mounted.camera.parameters.begin(),
+                   mounted.camera.parameters.end());
+  }
+  return numbers;
+}
+
 }  // namespace
 
 std::vector<CommonError> common_errors_of(const std::vector<CameraDoubt>& doubts,
@@ -75,16 +88,18 @@ std::vector<CommonError> common_errors_of(const std::vector<CameraDoubt>& doubts
   lower[range_of(CameraParameter::kCentre).first + 1] = kCornersTooHighPx;
   CommonError corners;  // of one sign in all sessions: more of them do not average it out
   corners.size = CommonErrorSize::kKnown;
+  std::map<std::vector<double>, CommonError> focal;  // of each calibration
   for (std::size_t s = 0; s < input.half_rigs.size(); ++s) {
-    const std::size_t count = input.half_rigs[s].cameras.size();
-    if (count == 0) continue;
-    CommonError focal;
-    focal.size = CommonErrorSize::kIfShown;
-    for (std::size_t c = 0; c < count; ++c) {
-      add_shift(static_cast<int>(s), static_cast<int>(c), longer, motion, stage, focal);
+    const Rig& rig = input.half_rigs[s];
+    for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+      add_shift(static_cast<int>(s), static_cast<int>(c), longer, motion, stage,
+                focal[calibration_of(rig)]);
       add_shift(static_cast<int>(s), static_cast<int>(c), lower, motion, stage, corners);
     }
-    errors.push_back(std::move(focal));
+  }
+  for (auto& [calibration, error] : focal) {
+    error.size = CommonErrorSize::kIfShown;
+    errors.push_back(std::move(error));
   }
   if (!corners.pixels.empty()) errors.push_back(std::move(corners));
   return errors;

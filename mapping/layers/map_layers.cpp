@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 #include "base/error.hpp"
@@ -37,11 +38,18 @@ struct MapLayers::Impl {
       : verified(part),
         database(part == VerifiedPart::kAll ? open_verified(map) : open_registries(map)) {}
 
-  void verify(const std::string& table) const {
-    if (verified == VerifiedPart::kWhatIsRead) verify_read(database, table);
+  // A name without a table is left to the reader.
+  void verify(const std::string& table) {
+    if (verified != VerifiedPart::kWhatIsRead || right.contains(table)) return;
+    SqlStatement found =
+        database.prepare("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?");
+    found.bind_text(1, table);
+    if (!found.step() || found.integer(0) == 0) return;
+    verify_table(database, table);
+    right.insert(table);
   }
 
-  void require(const std::string& name, bool vector) const {
+  void require(const std::string& name, bool vector) {
     SqlStatement found = database.prepare(
         "SELECT count(*) FROM gpkg_contents WHERE table_name = ? AND (data_type = 'features') = ? "
         "AND data_type != 'attributes'");
@@ -60,6 +68,7 @@ struct MapLayers::Impl {
 
   VerifiedPart verified;
   SqlDatabase database;
+  std::set<std::string> right;  // tables that were verified
 };
 
 MapLayers::MapLayers(const std::filesystem::path& map, VerifiedPart verified)

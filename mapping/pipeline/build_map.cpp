@@ -170,8 +170,9 @@ void build_from(const std::vector<Drive>& drives,
   const auto suspects = clock.run(
       "cameras", [&] { return judge_cameras(input, drives, adjusted, gate, options, summary); });
   clock.run("covariances", [&] {
-    add_covariances(input, relaxed, common_errors_of(suspects, input, adjusted.stage), options,
-                    adjusted);
+    if (options.covariances)
+      add_covariances(input, relaxed, common_errors_of(suspects, input, adjusted.stage), options,
+                      adjusted);
     return 0;
   });
 

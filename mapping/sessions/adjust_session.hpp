@@ -26,9 +26,9 @@ namespace roadbook {
                                       const MapOptions& options,
                                       const Progress& progress);
 
-/// Adds covariances, if `options` want them: of everything after SessionAdjust::kAll, else of the
-/// landmarks that the session sees or has moved. `doubts`: of the
-/// last session's cameras, which widen them (common_camera_errors.hpp).
+/// Adds covariances, if `options` want them. After SessionAdjust::kAll of everything: `doubts`
+/// about the last session's cameras widen them (common_camera_errors.hpp). Otherwise of the
+/// landmarks that the session sees or has moved, given the poses: no doubt widens those.
 void add_covariances_of_session(const JoinedSession& joined,
                                 std::vector<CameraDoubt> doubts,
                                 const MapOptions& options,

@@ -55,7 +55,8 @@ void renew_table_digest(const SqlDatabase& database, const std::string& table);
 /// of other tables are not read. Throws BadInput as verified_digests does.
 void verify_registries(const SqlDatabase& database);
 
-/// Compares the digest of one table, with which its rows are as they were stored. Throws BadInput.
+/// Compares the digest of one table, with which its rows are as they were stored, and its indices
+/// with the rows. Throws BadInput.
 void verify_table(const SqlDatabase& database, const std::string& table);
 
 }  // namespace roadbook

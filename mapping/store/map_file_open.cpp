@@ -6,7 +6,6 @@
 #include <array>
 #include <ctime>
 #include <mutex>
-#include <set>
 
 #include "base/text.hpp"
 #include "mapping/store/foreign_parts.hpp"
@@ -69,35 +68,20 @@ FileState state_of(const std::filesystem::path& path) {
           s.st_ctim.tv_nsec};
 }
 
-// What a file is remembered for, if it is not for one of its tables.
-constexpr const char* kAllTables = "";
-constexpr const char* kRegistries = "gpkg_";
-
-// Files, and tables of files, that this process has verified: a process that opens a map several
-// times reads all of it once (0.7 s for 120 MB). As in Git's index, a file that has just been
-// changed is not remembered: another change might carry the same time.
+// Files that this process has verified: a process that opens a map several times reads all of it
+// once (0.7 s for 120 MB). As in Git's index, a file that has just been changed is not remembered:
+// another change might carry the same time.
 class RightFiles {
  public:
-  /// Whether `part`, or all, of the file is known to be right.
-  [[nodiscard]] bool has(const FileState& state, const std::string& part) {
+  [[nodiscard]] bool has(const FileState& state) {
     const std::lock_guard lock(mutex_);
-    return state != FileState{} &&
-           std::any_of(files_.begin(), files_.end(), [&](const RightFile& file) {
-             return file.state == state &&
-                    (file.parts.contains(part) || file.parts.contains(kAllTables));
-           });
+    return std::find(states_.begin(), states_.end(), state) != states_.end();
   }
-  void remember(const FileState& state, const std::string& part) {
+  void remember(const FileState& state) {
     constexpr std::int64_t kSettledS = 2;
     if (std::time(nullptr) - std::max(state[3], state[5]) < kSettledS) return;
     const std::lock_guard lock(mutex_);
-    auto file = std::find_if(files_.begin(), files_.end(),
-                             [&](const RightFile& known) { return known.state == state; });
-    if (file == files_.end()) {
-      file = files_.begin() + static_cast<std::ptrdiff_t>(next_++ % files_.size());
-      *file = {state, {}};
-    }
-    file->parts.insert(part);
+    states_[next_++ % states_.size()] = state;
   }
   static RightFiles& of_process() {
     static RightFiles files;
@@ -105,12 +89,8 @@ class RightFiles {
   }
 
  private:
-  struct RightFile {
-    FileState state{};
-    std::set<std::string> parts;
-  };
   std::mutex mutex_;
-  std::array<RightFile, 16> files_{};
+  std::array<FileState, 16> states_{};
   std::size_t next_ = 0;
 };
 
@@ -130,33 +110,20 @@ SqlDatabase open_map_file(const std::filesystem::path& path) { return open_exist
 
 SqlDatabase open_verified(const std::filesystem::path& path) {
   const FileState state = state_of(path);
-  const bool known = RightFiles::of_process().has(state, kAllTables);
+  const bool known = state != FileState{} && RightFiles::of_process().has(state);
   SqlDatabase database = open_existing(path, !known);
   if (known && state_of(path) == state) return database;
   (void)verified_digests(database);
-  if (state_of(path) == state) RightFiles::of_process().remember(state, kAllTables);
+  if (state_of(path) == state) RightFiles::of_process().remember(state);
   return database;
 }
 
 SqlDatabase open_registries(const std::filesystem::path& path) {
   const FileState state = state_of(path);
-  const bool known = RightFiles::of_process().has(state, kRegistries);
+  const bool known = state != FileState{} && RightFiles::of_process().has(state);
   SqlDatabase database = open_existing(path, false);
-  if (known && state_of(path) == state) return database;
-  verify_registries(database);
-  if (state_of(path) == state) RightFiles::of_process().remember(state, kRegistries);
+  if (!known || state_of(path) != state) verify_registries(database);
   return database;
-}
-
-void verify_read(const SqlDatabase& database, const std::string& table) {
-  const FileState state = state_of(database.file());
-  if (RightFiles::of_process().has(state, table)) return;
-  SqlStatement found =
-      database.prepare("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?");
-  found.bind_text(1, table);
-  if (!found.step() || found.integer(0) == 0) return;
-  verify_table(database, table);
-  if (state_of(database.file()) == state) RightFiles::of_process().remember(state, table);
 }
 
 std::string meta_value(const SqlDatabase& database, const std::string& key) {

@@ -26,14 +26,9 @@ namespace roadbook {
 [[nodiscard]] SqlDatabase open_verified(const std::filesystem::path& path);
 
 /// The same as open_map_file, without a look at all pages: registries are verified
-/// (verify_registries), and a reader calls verify_read before it reads a table. What is not read
+/// (verify_registries), and a reader calls verify_table before it reads a table. What is not read
 /// may be damaged.
 [[nodiscard]] SqlDatabase open_registries(const std::filesystem::path& path);
-
-/// Compares the digest of a table of an open map before it is read, unless this process has
-/// verified it, or all of the file, and the file has not changed since. A name without a table is
-/// left to the reader. Throws BadInput.
-void verify_read(const SqlDatabase& database, const std::string& table);
 
 /// `map_meta` of an open file; empty where there is no such key.
 [[nodiscard]] std::string meta_value(const SqlDatabase& database, const std::string& key);

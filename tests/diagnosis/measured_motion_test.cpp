@@ -38,7 +38,7 @@ TEST(MeasuredMotion, FromItsMakersGuessTheTricyclesCalibrationIsFound) {
 // same rate in bends.
 TEST(MeasuredMotion, TheRaceCarsRearAxleIsLocked) {
   ROADBOOK_REQUIRE_DATA(data, "indy_av21");
-  for (const char* part : {"window: {from_s: 100, to_s: 140}", "window: {from_s: 60, to_s: 220}"}) {
+  for (const char* part : {"window: {from_s: 100, to_s: 140}", ""}) {  // and as a whole
     const Diagnosis d = diagnosed_motion(test::example_log("indy_av21_road.yaml", data, part));
     EXPECT_NEAR(size_of(d, "wheels0.locked_axle"), 1.0, 0.1) << part;
     for (const FoundCause& c : d.causes) EXPECT_NE(c.effect, "wheels0.track_width") << part;

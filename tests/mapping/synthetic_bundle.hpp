@@ -29,6 +29,15 @@ struct SyntheticOptions {
   double laps = 1.0;
 };
 
+/// Least squares of all observations, on one thread.
+inline BundleOptions exact_options() {
+  BundleOptions options;
+  options.loss = RobustLoss::kNone;
+  options.outlier_rounds = 0;
+  options.num_threads = 1;
+  return options;
+}
+
 inline Eigen::Isometry3d small_motion(double m, double rad, Random& random) {
   Vector6d xi;
   for (int i = 0; i < 6; ++i) xi(i) = (i < 3 ? m : rad) * random.normal();

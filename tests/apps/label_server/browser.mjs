@@ -19,7 +19,7 @@ const kFlags = [
 
 function skip(reason) {
   console.log(`not run: ${reason}`);
-  process.exit(77);
+  process.exit(process.exitCode || 77);  // an earlier part of this process may have failed
 }
 
 export function check(condition, what) {

@@ -12,14 +12,6 @@
 namespace roadbook {
 namespace {
 
-BundleOptions exact_options() {
-  BundleOptions options;
-  options.loss = RobustLoss::kNone;
-  options.outlier_rounds = 0;
-  options.num_threads = 1;
-  return options;
-}
-
 std::vector<int> one_piece(const BundleProblem& problem) {
   return std::vector<int>(problem.poses.size(), 0);
 }
@@ -51,7 +43,7 @@ TEST(ClusterCovariance, CoversErrorsThatTheViewsOfALandmarkShare) {
     test::SyntheticBundle s = test::synthetic_bundle(
         {.length_m = 30.0, .spacing_m = 0.5, .point_count = 120, .sigma_px = 0.2}, seed);
     add_slow_errors(1.0, seed, s.problem);
-    const BundleOptions options = exact_options();
+    const BundleOptions options = test::exact_options();
     const BundleResult result = bundle_adjust(s.problem, options);
     ASSERT_TRUE(result.usable);
     const auto by_pixels = bundle_covariance(s.problem, result.inlier, options);
@@ -80,7 +72,7 @@ TEST(ClusterCovariance, CoversErrorsThatTheViewsOfALandmarkShare) {
 // covariances are those that it has alone, up to the draws of the signs.
 TEST(ClusterCovariance, EachPieceIsRelativeToItsOwnFirstPose) {
   test::SyntheticBundle s = test::synthetic_bundle({.length_m = 20.0, .point_count = 60}, 7);
-  const BundleOptions options = exact_options();
+  const BundleOptions options = test::exact_options();
   ASSERT_TRUE(bundle_adjust(s.problem, options).usable);
   const auto alone = cluster_covariance(s.problem, {}, one_piece(s.problem), options);
   BundleProblem both = s.problem;
@@ -121,7 +113,7 @@ TEST(ClusterCovariance, EachPieceIsRelativeToItsOwnFirstPose) {
 
 TEST(ClusterCovariance, IsTheSameOnAnyNumberOfThreads) {
   test::SyntheticBundle s = test::synthetic_bundle({.length_m = 20.0, .point_count = 60}, 8);
-  BundleOptions options = exact_options();
+  BundleOptions options = test::exact_options();
   ASSERT_TRUE(bundle_adjust(s.problem, options).usable);
   const auto one = cluster_covariance(s.problem, {}, one_piece(s.problem), options);
   options.num_threads = 3;
@@ -135,7 +127,7 @@ TEST(ClusterCovariance, WheelsThatStoodStillWidenIt) {
       {.length_m = 30.0, .spacing_m = 0.5, .point_count = 60, .ground_share = 0.0}, 9);
   BundleProblem stuck = s.problem;
   for (std::size_t i = 20; i < 30; ++i) stuck.motions[i].T_from_to.setIdentity();
-  const BundleOptions options = exact_options();
+  const BundleOptions options = test::exact_options();
   ASSERT_TRUE(bundle_adjust(s.problem, options).usable);
   ASSERT_TRUE(bundle_adjust(stuck, options).usable);
   const auto good = cluster_covariance(s.problem, {}, one_piece(s.problem), options);

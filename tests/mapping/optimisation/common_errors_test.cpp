@@ -12,14 +12,6 @@
 namespace roadbook {
 namespace {
 
-BundleOptions plain_options() {
-  BundleOptions options;
-  options.loss = RobustLoss::kNone;
-  options.outlier_rounds = 0;
-  options.num_threads = 1;
-  return options;
-}
-
 // All pixels 1 % farther from the optical axis, as longer focal lengths of all cameras make them.
 CommonError longer_focal_lengths(const BundleProblem& problem) {
   CommonError error;
@@ -46,7 +38,7 @@ Normalised normalised_errors(double wrong) {
     for (MountedCamera& mounted : s.problem.cameras)
       for (std::size_t i = 0; i < 2; ++i)
         mounted.camera.parameters[i] *= seed % 2 == 0 ? 1.0 + wrong : 1.0 - wrong;
-    const BundleOptions options = plain_options();
+    const BundleOptions options = test::exact_options();
     EXPECT_TRUE(bundle_adjust(s.problem, options).usable);
     const std::vector<int> piece(s.problem.poses.size(), 0);
     const auto without = cluster_covariance(s.problem, {}, piece, options);

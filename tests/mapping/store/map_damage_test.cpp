@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 
 #include "base/error.hpp"
 #include "mapping/layers/map_layers.hpp"
@@ -13,22 +11,16 @@
 #include "mapping/store/map_file_codec.hpp"
 #include "mapping/store/map_file_seal.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
+#include "tests/mapping/store/file_bytes.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
 namespace roadbook {
 namespace {
 
 using test::Folder;
+using test::read_bytes;
 using test::small_map;
-
-std::string read_bytes(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
+using test::write_bytes;
 
 /// One of: a flipped bit, a zeroed sector, random bytes, a cut.
 std::string damaged(std::string bytes, Random& random) {

@@ -15,6 +15,7 @@
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
+#include "tests/mapping/store/file_bytes.hpp"
 #include "tests/mapping/store/small_map.hpp"
 #include "tests/support/command_output.hpp"
 
@@ -276,6 +277,50 @@ TEST(MapLayers, RastersComeBackAsTheyWere) {
     EXPECT_EQ(cv::norm(window, pixels(part), cv::NORM_INF), 0.0);
     EXPECT_THROW((void)layers.read_raster(name, {0, 0, pixels.cols + 1, 5}), InvalidOption);
   }
+}
+
+// GDAL finds a tile by an index. An index that has lost its entries would turn the tile into no
+// data.
+TEST(MapLayers, ARasterWhoseIndexLostItsEntriesIsRefused) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapFileBuilder(path, "key").finish(small_map(1), {});
+  {
+    MapUpdate update(path);
+    write_geotiff(folder / "r.tif", cv::Mat(700, 900, CV_8UC1, cv::Scalar(9)));
+    update.write_raster("strip", folder / "r.tif", {.description = "a raster"});
+    update.commit();
+  }
+  const std::string good = test::read_bytes(path);
+  std::vector<std::size_t> index_pages;  // where they begin in the file
+  std::size_t page_bytes = 0;
+  {
+    const SqlDatabase database(path, SqlMode::kRead);
+    page_bytes = std::stoul(database.value("PRAGMA page_size"));
+    SqlStatement rows = database.prepare(
+        "SELECT rootpage FROM sqlite_master WHERE type = 'index' AND tbl_name IN "
+        "('strip', 'gpkg_2d_gridded_tile_ancillary', 'gpkg_tile_matrix')");
+    while (rows.step())
+      index_pages.push_back((static_cast<std::size_t>(rows.integer(0)) - 1) * page_bytes);
+  }
+  ASSERT_GE(index_pages.size(), 2U);
+  int filled = 0;
+  for (const std::size_t page : index_pages) {
+    std::string bad = good;
+    constexpr std::size_t kCells = 3;  // of the page's header: how many entries it has
+    if (bad[page + kCells] == 0 && bad[page + kCells + 1] == 0) continue;
+    bad[page + kCells] = bad[page + kCells + 1] = 0;
+    test::write_bytes(path, bad);
+    const auto read = [&] {
+      (void)MapLayers(path, VerifiedPart::kWhatIsRead).read_raster("strip", {0, 0, 900, 700});
+    };
+    EXPECT_THROW(read(), BadInput) << page / page_bytes + 1;
+    ++filled;
+  }
+  EXPECT_GE(filled, 2);
+  test::write_bytes(path, good);
+  const MapLayers layers(path, VerifiedPart::kWhatIsRead);
+  EXPECT_EQ(cv::countNonZero(layers.read_raster("strip", {0, 0, 900, 700}) != 9), 0);
 }
 
 TEST(MapLayers, RastersOfAnyShapeGetOverviewsUntilOneTileHoldsThem) {
