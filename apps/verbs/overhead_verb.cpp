@@ -28,8 +28,9 @@ Verb overhead_verb() {
         add_vehicle_option(options, &command->vehicle);
         options.add("--mode", mode.get(), "how images are averaged").choices = {"weighted", "mean"};
         options.add("--keep-exposure", keep_exposure.get(), "do not balance exposure");
-        options.add("--memory-mb", &o.memory_mb, "memory for tiles of the image [MB]").range = {
-            64, 1e6};
+        options
+            .add("--memory-mb", &o.memory_mb, "memory for tiles and for decoded camera images [MB]")
+            .range = {64, 1e6};
       },
       [=](Console& console, const CommonOptions& common) {
         command->options.num_threads = common.threads;

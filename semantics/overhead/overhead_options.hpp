@@ -30,7 +30,7 @@ struct OverheadOptions {
   /// For a Map: vehicle measures that replace those of the map.
   std::optional<VehicleMeasures> vehicle;
   GroundModelOptions ground;  ///< for a Map; reach_m is raised to max_range_m if smaller
-  int memory_mb = 512;        ///< for tiles in memory; other tiles are in a scratch folder
+  int memory_mb = 512;        ///< for tiles, and for images that a second pass reads
   int num_threads = 0;        ///< 0: all cores; the result does not depend on it
   /// Part of the map to make (x, y); empty: everything in range of the views.
   std::optional<Eigen::AlignedBox2d> area;
