@@ -27,20 +27,19 @@ bool allowed(const cv::KeyPoint& k, const cv::Mat& image, const cv::Mat& mask, f
   return mask.empty() || mask.at<std::uint8_t>(cvRound(k.pt.y), cvRound(k.pt.x)) != 0;
 }
 
-std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> found,
+// `found`: strongest first.
+std::vector<cv::KeyPoint> spread_evenly(const std::vector<cv::KeyPoint>& found,
                                         const cv::Mat& image,
-                                        const cv::Mat& mask,
+                                        int per_cell,
                                         const FeatureOptions& options) {
-  std::sort(found.begin(), found.end(), stronger);
   const int columns = image.cols / options.cell_px + 1;
   const int rows = image.rows / options.cell_px + 1;
   std::vector<int> taken(static_cast<std::size_t>(columns * rows));
   std::vector<cv::KeyPoint> kept;
   for (const auto& k : found) {
-    if (!allowed(k, image, mask, static_cast<float>(options.border_px))) continue;
     int& count = taken[static_cast<std::size_t>(cvFloor(k.pt.y) / options.cell_px * columns +
                                                 cvFloor(k.pt.x) / options.cell_px)];
-    if (count >= options.max_per_cell) continue;
+    if (count >= per_cell) continue;
     ++count;
     kept.push_back(k);
     if (static_cast<int>(kept.size()) == options.max_features) break;
@@ -48,10 +47,30 @@ std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> found,
   return kept;
 }
 
+// The strongest of each cell. Corners of small images and of plain ones crowd in few cells: there,
+// cells give more until the image has its fewest.
+std::vector<cv::KeyPoint> chosen_corners(const cv::Mat& image,
+                                         const cv::Mat& mask,
+                                         int threshold,
+                                         const FeatureOptions& options) {
+  std::vector<cv::KeyPoint> found = find_corners(image, threshold);
+  std::erase_if(found, [&](const cv::KeyPoint& k) {
+    return !allowed(k, image, mask, static_cast<float>(options.border_px));
+  });
+  std::sort(found.begin(), found.end(), stronger);
+  const auto fewest = std::min(found.size(), static_cast<std::size_t>(options.fewest));
+  int per_cell = options.max_per_cell;
+  auto kept = spread_evenly(found, image, per_cell, options);
+  while (kept.size() < fewest) kept = spread_evenly(found, image, ++per_cell, options);
+  return kept;
+}
+
 }  // namespace
 
 void FeatureOptions::check() const {
   if (max_features < 1) throw InvalidOption("max_features", std::to_string(max_features), ">= 1");
+  if (fewest < 0 || fewest > max_features)
+    throw InvalidOption("fewest", std::to_string(fewest), "0 to max_features");
   if (cell_px < 8) throw InvalidOption("cell_px", std::to_string(cell_px), ">= 8");
   if (low_threshold < 1 || low_threshold > threshold)
     throw InvalidOption("low_threshold", std::to_string(low_threshold), "1 to threshold");
@@ -63,7 +82,7 @@ Features detect_features(const cv::Mat& half_image,
   ROADBOOK_ASSERT(half_image.type() == CV_8UC1);
   std::vector<cv::KeyPoint> kept;
   for (const int threshold : {options.threshold, options.low_threshold}) {
-    kept = spread_evenly(find_corners(half_image, threshold), half_image, mask, options);
+    kept = chosen_corners(half_image, mask, threshold, options);
     if (static_cast<int>(kept.size()) > options.max_features / 3) break;
   }
   std::vector<cv::Point2f> corners;

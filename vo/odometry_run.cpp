@@ -98,11 +98,15 @@ class CandidateChooser {
   std::optional<Step> held_;  // the newest frame short of the next keyframe
 };
 
-// A rig of few cameras sees no more than a rig of four, but may look more closely.
+// A rig of few cameras sees no more than a rig of four, but may look more closely. A camera that
+// turns shows half of its corners in the next keyframe: with few of them it loses its way.
 FeatureOptions share_of(FeatureOptions features, std::size_t cameras) {
+  constexpr int kFewestOfRig = 480;
   const int factor = cameras == 1 ? 3 : cameras == 2 ? 2 : 1;
   features.max_features *= factor;
   features.max_per_cell *= factor;
+  if (factor > 1)
+    features.fewest = std::min(features.max_features, kFewestOfRig / static_cast<int>(cameras));
   return features;
 }
 

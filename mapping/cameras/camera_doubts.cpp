@@ -47,6 +47,12 @@ double significance(const CameraFit& fit) {
   return most;
 }
 
+// Larger than the size that matters by at least one standard deviation.
+bool matters(const CameraFit& fit, const MountedCamera& camera, const CameraDoubtOptions& options) {
+  const double sigmas = significance(fit);
+  return sigmas > 0.0 && relative_size(fit, camera, options) * (1.0 - 1.0 / sigmas) >= 1.0;
+}
+
 double least_sigmas(CameraParameter parameter, const CameraDoubtOptions& options) {
   switch (parameter) {
     case CameraParameter::kCentre:
@@ -68,7 +74,7 @@ std::vector<const CameraFit*> likeliest(const CameraEvidence& evidence,
                                         const CameraDoubtOptions& options) {
   std::vector<const CameraFit*> fits;
   for (const CameraFit& fit : evidence.fits)
-    if (relative_size(fit, camera, options) >= 1.0 &&
+    if (matters(fit, camera, options) &&
         significance(fit) >= least_sigmas(fit.parameter, options) && fit.gain >= options.min_gain)
       fits.push_back(&fit);
   std::stable_sort(fits.begin(), fits.end(),

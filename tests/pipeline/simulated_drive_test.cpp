@@ -276,8 +276,8 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     const double driven_m = test::driven_truth_m(map, drive);
     EXPECT_NEAR(map.keyframes.back().travelled_m, driven_m, 0.01 * driven_m);
   }
-  {
-    const std::string camera = "cam1";  // others lose their way with images of this size
+  // The front camera sees little that is near in the tight turns.
+  for (const std::string camera : {"cam0", "cam1"}) {
     SCOPED_TRACE(camera + " alone");
     const auto copy = linked_copy(round, folder / (camera + "_alone"));
     keep_alone(copy, camera);

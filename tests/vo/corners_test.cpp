@@ -100,6 +100,25 @@ TEST(Features, KeepWithinMaskBorderAndQuota) {
   for (const auto& [cell, count] : cells) EXPECT_LE(count, 4);
 }
 
+// All speckles lie in four cells, each of which gives two corners.
+TEST(Features, CrowdedInFewCellsAreStillManyEnough) {
+  cv::Mat image(240, 320, CV_8UC1, cv::Scalar(128));
+  speckled(7)(cv::Rect(64, 64, 64, 64)).copyTo(image(cv::Rect(64, 64, 64, 64)));
+  FeatureOptions options;
+  options.max_per_cell = 2;
+  const Features spread = detect_features(image, {}, options);
+  options.fewest = 30;
+  const Features enough = detect_features(image, {}, options);
+  EXPECT_LT(spread.size(), 20U);
+  EXPECT_GE(enough.size(), 30U);
+  // No more than the last corner of each cell that was needed.
+  EXPECT_LE(enough.size(), 40U);
+  options.fewest = options.max_features;
+  const std::size_t all = detect_features(image, {}, options).size();
+  EXPECT_GT(all, enough.size());
+  EXPECT_LT(all, static_cast<std::size_t>(options.max_features));
+}
+
 TEST(Features, OfAPlainImageAreNone) {
   EXPECT_EQ(detect_features(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), {}).size(), 0U);
 }
