@@ -266,6 +266,8 @@ std::size_t direction_of(const std::int32_t* values) {
 
 }  // namespace
 
+float description_border_px() { return pattern().border; }
+
 DescribedCorners describe_corners(const cv::Mat& image, std::span<const cv::Point2f> corners) {
   ROADBOOK_ASSERT(image.type() == CV_8UC1);
   const BriskPattern& p = pattern();

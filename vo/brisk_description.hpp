@@ -19,6 +19,9 @@ struct DescribedCorners {
   std::vector<Descriptor> descriptors;
 };
 
+/// Distance from the image border [pixels] that the rings of a corner need.
+[[nodiscard]] float description_border_px();
+
 /// Describes corners [pixels] of an 8-bit grey image. Corners whose rings leave the image are left
 /// out. The descriptors are those of cv::BRISK, bit for bit. Safe to call concurrently.
 [[nodiscard]] DescribedCorners describe_corners(const cv::Mat& image,

@@ -11,8 +11,9 @@ namespace {
 // Whether a pose without wheels may be believed: by many corners, or by fewer that nearly all
 // agree. A single camera sees few corners in a tight turn.
 bool enough_agree(int inliers, std::size_t points, int min_inliers) {
-  return inliers >= min_inliers ||
-         (2 * inliers >= min_inliers && 4 * inliers >= 3 * static_cast<int>(points));
+  constexpr int kFewest = 6;  // twice the sample of find_rig_pose
+  return inliers >= min_inliers || (inliers >= std::max(kFewest, min_inliers / 2) &&
+                                    4 * inliers >= 3 * static_cast<int>(points));
 }
 
 }  // namespace

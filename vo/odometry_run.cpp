@@ -106,7 +106,8 @@ FeatureOptions share_of(FeatureOptions features, std::size_t cameras) {
   features.max_features *= factor;
   features.max_per_cell *= factor;
   if (factor > 1)
-    features.fewest = std::min(features.max_features, kFewestOfRig / static_cast<int>(cameras));
+    features.fewest = std::clamp(kFewestOfRig / static_cast<int>(cameras), features.fewest,
+                                 features.max_features);
   return features;
 }
 

@@ -47,10 +47,18 @@ double significance(const CameraFit& fit) {
   return most;
 }
 
+// Standard deviation of the fitted effect's size, as a share of the size.
+double uncertain_share(const CameraFit& fit) {
+  const ParameterRange range = range_of(fit.parameter);
+  const auto e = fit.errors.segment(range.first, range.count);
+  const auto s = fit.sigmas.segment(range.first, range.count);
+  const double squared = e.squaredNorm();
+  return squared > 0.0 ? e.cwiseProduct(s).norm() / squared : 1.0;
+}
+
 // Larger than the size that matters by at least one standard deviation.
 bool matters(const CameraFit& fit, const MountedCamera& camera, const CameraDoubtOptions& options) {
-  const double sigmas = significance(fit);
-  return sigmas > 0.0 && relative_size(fit, camera, options) * (1.0 - 1.0 / sigmas) >= 1.0;
+  return relative_size(fit, camera, options) * (1.0 - uncertain_share(fit)) >= 1.0;
 }
 
 double least_sigmas(CameraParameter parameter, const CameraDoubtOptions& options) {
@@ -68,19 +76,21 @@ double least_sigmas(CameraParameter parameter, const CameraDoubtOptions& options
 }
 
 // The fits that matter and are no chance, likeliest first: those that explain nearly as much as the
-// best.
+// best. Where a small error explains far more, nothing is left: it does not matter.
 std::vector<const CameraFit*> likeliest(const CameraEvidence& evidence,
                                         const MountedCamera& camera,
                                         const CameraDoubtOptions& options) {
   std::vector<const CameraFit*> fits;
-  for (const CameraFit& fit : evidence.fits)
-    if (matters(fit, camera, options) &&
-        significance(fit) >= least_sigmas(fit.parameter, options) && fit.gain >= options.min_gain)
-      fits.push_back(&fit);
+  double most = 0.0;
+  for (const CameraFit& fit : evidence.fits) {
+    if (significance(fit) < least_sigmas(fit.parameter, options) || fit.gain < options.min_gain)
+      continue;
+    most = std::max(most, fit.gain);
+    if (matters(fit, camera, options)) fits.push_back(&fit);
+  }
+  std::erase_if(fits, [&](const CameraFit* fit) { return fit->gain < options.as_likely * most; });
   std::stable_sort(fits.begin(), fits.end(),
                    [](const CameraFit* a, const CameraFit* b) { return a->gain > b->gain; });
-  const double least = fits.empty() ? 0.0 : options.as_likely * fits.front()->gain;
-  std::erase_if(fits, [&](const CameraFit* fit) { return fit->gain < least; });
   return fits;
 }
 
