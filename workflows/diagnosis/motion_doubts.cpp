@@ -12,17 +12,31 @@
 namespace roadbook {
 namespace {
 
-// Of the keyframes of the session's first piece.
+// Way that is compared: the cost of a diagnosis grows faster than the way. A reading that is wrong
+// for a time only is found where wheels and cameras doubt each other.
+constexpr double kCompared_m = 400.0;
+
+// Of the keyframes of the session's first piece, up to kCompared_m after its start.
 std::vector<TimedPose> poses_of_session(const Map& map, int session) {
   std::vector<TimedPose> poses;
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
     const Keyframe& keyframe = map.keyframes[k];
-    if (keyframe.session == session && keyframe.piece == 0)
+    if (keyframe.session == session && keyframe.piece == 0 && keyframe.travelled_m <= kCompared_m)
       poses.push_back({keyframe.t_ns, map.T_map_vehicle(static_cast<int>(k))});
   }
   std::sort(poses.begin(), poses.end(),
             [](const TimedPose& a, const TimedPose& b) { return a.t_ns < b.t_ns; });
   return poses;
+}
+
+// Drops what was read after the last pose, but for the time that a late stream needs.
+void end_with_poses(MotionStreams& streams) {
+  constexpr double kLate_s = 1.0;
+  const double end_s = streams.poses.back().t_s + kLate_s;
+  const auto is_later = [&](const auto& sample) { return sample.t_s > end_s; };
+  std::erase_if(streams.wheels, is_later);
+  std::erase_if(streams.steering, is_later);
+  std::erase_if(streams.gyro, is_later);
 }
 
 // The radius of both wheels is the map's scale. An effect that the map or several other names
@@ -70,6 +84,8 @@ std::vector<Problem> motion_doubts(const Map& map, const Drive& drive, const Eff
   if (session == map.sessions.end()) return {};
   const auto poses = poses_of_session(map, static_cast<int>(session - map.sessions.begin()));
   MotionStreams streams = motion_streams(drive, poses);
+  if (streams.poses.empty()) return {};
+  end_with_poses(streams);
   if (!records_motion(streams)) return {};
   streams.poses_of_map = true;
   DiagnosisOptions options;
