@@ -14,8 +14,9 @@ struct FeatureOptions {
   int max_features = 320;  ///< per image
   int cell_px = 32;        ///< side of the cells that spread the features over the image
   int max_per_cell = 3;    ///< only this number of the strongest features stays in each cell
-  int fewest = 0;      ///< per image, if it has them: cells give more than max_per_cell until then
-  int threshold = 22;  ///< AGAST corner threshold [grey levels]
+  /// Least number per image, if it has so many corners: cells keep more than max_per_cell for it.
+  int fewest = 0;
+  int threshold = 22;       ///< AGAST corner threshold [grey levels]
   int low_threshold = 9;    ///< tried where the first one finds too few (dim or plain images)
   double border_px = 12.0;  ///< distance kept from the image border
 

@@ -38,7 +38,7 @@ struct CameraDoubtOptions {
   double rotation_rad = 0.009;  ///< sizes that matter, exceeded by one standard deviation
   double focal = 0.006;         ///< relative
   double centre_share = 0.012;  ///< of the focal length
-  double position_m = 0.3;      ///< poses that bend look like 0.1 to 0.24 m in clean drives
+  double position_m = 0.3;      ///< maps of right cameras bend and look like 0.1 to 0.24 m
   double delay_s = 0.010;
   double min_sigmas = 4.0;        ///< a smaller effect may be chance
   double min_sigmas_weak = 6.0;   ///< of position and principal point

@@ -98,5 +98,25 @@ TEST(MotionDoubts, OfASoundDriveOrAnotherDriveSayNothing) {
   EXPECT_TRUE(motion_doubts(m.map, m.drive, {}).empty());
 }
 
+// The poses of the second half jump away from the truth, but lie more than 400 m from the start.
+TEST(MotionDoubts, CompareTheFirst400MetresAlone) {
+  const test::TemporaryFolder folder;
+  Mapped m = mapped(drive_with("wheels0.left_radius", -0.02, 0), folder.path() / "drive");
+  auto& keyframes = m.map.keyframes;
+  for (std::size_t k = keyframes.size() / 2; k < keyframes.size(); ++k) {
+    keyframes[k].travelled_m = 401.0;
+    keyframes[k].T_frame_vehicle.translation() += Eigen::Vector3d(5.0, 1.0, 0.0);
+  }
+  const std::vector<Problem> doubts = motion_doubts(m.map, m.drive, {});
+  ASSERT_EQ(doubts.size(), 1U);
+  EXPECT_EQ(doubts[0].field, "left_radius");
+  keyframes.resize(keyframes.size() / 2);
+  const std::vector<Problem> without = motion_doubts(m.map, m.drive, {});
+  ASSERT_EQ(without.size(), 1U);
+  EXPECT_EQ(without[0].got, doubts[0].got);
+  for (Keyframe& keyframe : keyframes) keyframe.travelled_m = 401.0;
+  EXPECT_TRUE(motion_doubts(m.map, m.drive, {}).empty());
+}
+
 }  // namespace
 }  // namespace roadbook

@@ -163,6 +163,24 @@ TEST(CameraDoubts, NameLateImages) {
   }
 }
 
+// A size that exceeds what matters by half a standard deviation may well be smaller.
+TEST(CameraDoubts, NeedASizeThatSurelyMatters) {
+  Recording recording;
+  recording.late_s = 0.02;
+  const MappingInput input = recorded(recording, 3);
+  const auto evidence = camera_evidence(input, vehicle_motion(input, recording.poses), 0);
+  const Eigen::Index delay = range_of(CameraParameter::kDelay).first;
+  const auto fit =
+      std::find_if(evidence[1].fits.begin(), evidence[1].fits.end(),
+                   [](const CameraFit& f) { return f.parameter == CameraParameter::kDelay; });
+  ASSERT_NE(fit, evidence[1].fits.end());
+  CameraDoubtOptions options;
+  options.delay_s = std::abs(fit->errors[delay]) - 0.5 * fit->sigmas[delay];
+  EXPECT_TRUE(doubt_cameras(input, recording.poses, options).empty());
+  options.delay_s = std::abs(fit->errors[delay]) - 2.0 * fit->sigmas[delay];
+  expect_only(doubt_cameras(input, recording.poses, options), 1, "time_offset");
+}
+
 TEST(CameraDoubts, NameExchangedCameras) {
   Recording recording;
   MappingInput input = recorded(recording, 3);
