@@ -6,18 +6,6 @@
 
 namespace roadbook {
 
-namespace {
-
-// Whether a pose without wheels may be believed: by many corners, or by fewer that nearly all
-// agree. A single camera sees few corners in a tight turn.
-bool enough_agree(int inliers, std::size_t points, int min_inliers) {
-  constexpr int kFewest = 6;  // twice the sample of find_rig_pose
-  return inliers >= min_inliers || (inliers >= std::max(kFewest, min_inliers / 2) &&
-                                    4 * inliers >= 3 * static_cast<int>(points));
-}
-
-}  // namespace
-
 Eigen::Isometry3d VisualOdometry::State::predict(const VoFrame& frame) const {
   if (frame.wheels) return last().T_odom_vehicle * planar_transform(*frame.wheels);
   const double dt = static_cast<double>(frame.t_ns - last().t_ns) * 1e-9;
@@ -54,17 +42,15 @@ std::optional<RigPose> VisualOdometry::State::estimate(const VoFrame& frame,
     const auto found = find_rig_pose(rig, points, pose_options);
     if (found && (!pose || found->inliers > pose->inliers)) pose = found;
   }
-  const auto believed = [&](const RigPose& found) {
-    return enough_agree(found.inliers, points.size(), options.min_inliers);
-  };
-  if (!pose || (!frame.wheels && !believed(*pose))) return std::nullopt;
-  if (frame.wheels && pose->inliers < options.min_inliers) pose->T_world_vehicle = predicted;
+  if (!pose || (pose->inliers < options.min_inliers && !frame.wheels)) return std::nullopt;
+  if (pose->inliers < options.min_inliers) pose->T_world_vehicle = predicted;
   matches = search(frame, grids, pose->T_world_vehicle, kRefinedRadiusPx, Searched::kAll);
   points = known_points(frame, matches);
   pose_options.iterations = 6;
   auto refined = refine_rig_pose(rig, points, pose->T_world_vehicle, prior, pose_options);
-  if (!refined || (!frame.wheels && !believed(*refined))) return std::nullopt;
-  if (frame.wheels && refined->inliers < options.min_inliers) {
+  if (!refined) return std::nullopt;
+  if (refined->inliers < options.min_inliers) {
+    if (!frame.wheels) return std::nullopt;
     refined->T_world_vehicle = predicted;
     refined->information = prior->information;
   }

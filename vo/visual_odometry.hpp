@@ -21,10 +21,8 @@ struct VoOptions {
   double feature_sigma_px = 0.6;    ///< of a corner, half-size image
   double inlier_px = 2.5;           ///< half-size image
   double min_parallax_rad = 0.017;  ///< that a corner needs to be triangulated
-  /// Corners that agree with a pose. With fewer, the motion is taken from the wheels. Without
-  /// wheels it is unknown; half as many are enough if they are three quarters of those found again.
-  int min_inliers = 20;
-  int max_skipped = 2;  ///< keyframes a track may miss before it ends
+  int min_inliers = 20;  ///< with fewer, the motion is taken from the wheels, or is unknown
+  int max_skipped = 2;   ///< keyframes a track may miss before it ends
   /// Divides the information of the estimated motions, because errors of many corners are
   /// correlated.
   double information_discount = 25.0;
