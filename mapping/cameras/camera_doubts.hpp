@@ -36,10 +36,10 @@ struct CameraEvidence {
 struct CameraDoubtOptions {
   double inlier_px = 0.6;         ///< of a track that fits, half-size image
   double rotation_rad = 0.009;    ///< sizes that matter, exceeded by one standard deviation
-  double focal = 0.009;           ///< relative; right cameras show up to 1.1 % +- 0.2 %
+  double focal = 0.006;           ///< relative
   double centre_share = 0.012;    ///< of the focal length
   double position_m = 0.3;        ///< maps of right cameras bend and look like 0.1 to 0.24 m
-  double delay_s = 0.015;         ///< right cameras show up to 14 ms +- 4 ms
+  double delay_s = 0.012;         ///< right cameras show up to 14 ms +- 4 ms
   double min_sigmas = 4.0;        ///< a smaller effect may be chance
   double min_sigmas_weak = 6.0;   ///< of position and principal point
   double min_sigmas_delay = 3.0;  ///< of delays, which resemble no other parameter
