@@ -38,7 +38,7 @@ void find_wrong_pieces(const Map& map, std::vector<Problem>& problems) {
   for (const auto& [part, pieces] : pieces_of_part)
     if (pieces.size() > 1)
       problems.push_back(
-          finding("sessions " + sessions_in([&](std::size_t k) { return parts[k] == part; }),
+          finding("sessions " + sessions_in([&, p = part](std::size_t k) { return parts[k] == p; }),
                   std::to_string(pieces.size()) + " pieces of the map",
                   "one piece: odometry, loops or landmarks join these poses"));
   for (const auto& [piece, of_piece] : parts_of_piece)

@@ -14,9 +14,11 @@ namespace {
 constexpr int kFreePoses = 7;        // newest keyframes of a window; those before them stay
 constexpr int kStartKeyframes = 30;  // of a stretch, while the scale is hardly known
 
-// Scale by the ground around the newest pose. Where a slope begins, the ground ahead is tilted and
-// would look like another height: of several tilts, the one that most points agree on counts.
-std::optional<GroundScale> scale_by_ground_around(const VoWindow& window, double camera_height_m) {
+// Scale by the ground around a pose of the window. Where a slope begins, the ground ahead is tilted
+// and would look like another height: of several tilts, the one that most points agree on counts.
+std::optional<GroundScale> scale_by_ground_around(const VoWindow& window,
+                                                  std::size_t pose,
+                                                  double camera_height_m) {
   constexpr double kAheadHeights = 10.0;  // farther away, a small tilt is a large error
   constexpr double kBesideHeights = 4.0;
   constexpr int kFewest = 20;
@@ -24,7 +26,7 @@ std::optional<GroundScale> scale_by_ground_around(const VoWindow& window, double
   constexpr int kTilts = 4;              // to either side
   constexpr double kTiltStep = 0.025;    // [rad]
   constexpr double kLevelSupport = 1.1;  // factor on the support of a ground without tilt
-  const Eigen::Isometry3d T_vehicle_odom = window.T_odom_vehicle.back().inverse();
+  const Eigen::Isometry3d T_vehicle_odom = window.T_odom_vehicle[pose].inverse();
   std::vector<Eigen::Vector3d> near;
   for (const Eigen::Vector3d& point : window.points) {
     const Eigen::Vector3d p = T_vehicle_odom * point;
@@ -114,7 +116,15 @@ void VisualOdometry::State::follow_ground(VoWindow& window) {
   const auto first = result.keyframes.size() - size;
   const auto height_m = known_camera_height(rig);
   if (!height_m) return;
-  const auto scale = scale_by_ground_around(window, *height_m);
+  if (size > kFreePoses) {
+    // A pose that is free no longer keeps what the ground says of it now: the adjustment has moved
+    // it since it was the newest.
+    const std::size_t settled = size - 1 - kFreePoses;
+    const auto scale = scale_by_ground_around(window, settled, *height_m);
+    auto& known = result.keyframes[first + settled].ground_log_scale;
+    known = scale ? std::optional(std::log(scale->scale)) : std::nullopt;
+  }
+  const auto scale = scale_by_ground_around(window, size - 1, *height_m);
   if (!scale) return;
   last().ground_log_scale = std::log(scale->scale);
   if (std::any_of(result.keyframes.begin() + static_cast<std::ptrdiff_t>(first),
@@ -147,7 +157,6 @@ void VisualOdometry::State::adjust_newest() {
   follow_ground(window);
   WindowOptions window_options;
   window_options.sigma_px = options.feature_sigma_px;
-  window_options.width_px = options.inlier_px;
   window_options.least_views = options.min_inliers;
   adjust_window(rig, window_options, window);
   const std::size_t first = result.keyframes.size() - size;
