@@ -13,6 +13,9 @@
 namespace roadbook {
 namespace {
 
+// Of a size with a held-out gain that is not significant: with less, the effect is not named.
+constexpr double kLeastSigmas = 3.0;
+
 FoundCause found_cause(const CauseProblem& problem, const AcceptedEffect& v) {
   FoundCause cause;
   const Candidate& c = v.cause.candidate;
@@ -92,12 +95,22 @@ std::string no_answer(const AcceptedEffect& v) {
                   c.name.c_str(), size, unit_after(c.unit).c_str());
     return text;
   }
-  if (v.gain.total >= 0.0) return {};
-  std::snprintf(
-      text, sizeof text,
-      "resembles %s = %.3g%s, but it predicts held-out blocks worse than the model without it",
-      c.name.c_str(), size, unit_after(c.unit).c_str());
-  return text;
+  if (v.gain.total < 0.0) {
+    std::snprintf(
+        text, sizeof text,
+        "resembles %s = %.3g%s, but it predicts held-out blocks worse than the model without it",
+        c.name.c_str(), size, unit_after(c.unit).c_str());
+    return text;
+  }
+  // Its p-value takes rows for independent; sigma and gain allow for errors that last.
+  if (v.gain.low <= 0.0 && std::abs(size) < kLeastSigmas * v.sigma) {
+    std::snprintf(text, sizeof text,
+                  "resembles %s = %.3g%s, but this size is only %.1f standard deviations and its "
+                  "held-out gain is not significant",
+                  c.name.c_str(), size, unit_after(c.unit).c_str(), std::abs(size) / v.sigma);
+    return text;
+  }
+  return {};
 }
 
 // Of an effect that two kinds of data show.

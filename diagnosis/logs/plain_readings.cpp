@@ -140,7 +140,7 @@ void read_beacons(YamlMap& yaml,
   std::vector<BeaconRange> samples;
   std::size_t unknown = 0;
   for (std::size_t i = 0; i < id.size(); ++i) {
-    const auto pose = pose_at(log.streams.poses, t[i]);
+    const auto pose = pose_at(log.streams.poses, format.since_begin(t[i]));
     const bool whole = std::abs(id[i]) <= 1e9;
     const auto beacon = whole ? places.find(std::lround(id[i])) : places.end();
     unknown += beacon == places.end();

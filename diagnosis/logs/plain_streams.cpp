@@ -114,18 +114,21 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
   kept.rows.clear();
   kept.lines.clear();
   std::vector<std::size_t> late;  // rows
-  double before_s = 0.0;          // the first of them
+  double before_s = 0.0;          // the last good one before the first of them
+  double last_s = 0.0;            // the last good one
   std::size_t repeats = 0;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
-    if (!t_s_.empty() && stamps[i] <= t_s_.back()) {
-      const bool repeat = stamps[i] == t_s_.back();
+    const double t_s = spec_.table.since_begin(stamps[i]);
+    if (!t_s_.empty() && t_s <= t_s_.back()) {
+      const bool repeat = t_s == t_s_.back();
       repeats += repeat ? 1 : 0;
       if (spec_.table.drop_repeats && repeat) continue;
-      if (late.empty()) before_s = t_s_.back();
+      if (late.empty()) before_s = last_s;
       late.push_back(i);
       continue;
     }
-    t_s_.push_back(stamps[i]);
+    last_s = stamps[i];
+    t_s_.push_back(t_s);
     kept.rows.push_back(std::move(table_.rows[i]));
     kept.lines.push_back(table_.lines[i]);
   }

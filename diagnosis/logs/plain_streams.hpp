@@ -52,7 +52,8 @@ void refuse_stream_keys(YamlMap& top);
                                                        const std::string& key,
                                                        Quantity quantity);
 
-/// The table of a stream with its stamps. Checks that stamps increase from row to row.
+/// The table of a stream with its stamps [s since the log's clock begins, whole microseconds].
+/// Checks that stamps increase from row to row.
 class StreamReader {
  public:
   StreamReader(StreamSpec spec, ProblemList& problems, std::vector<std::string>& notes);

@@ -1,6 +1,7 @@
 #include "diagnosis/logs/plain_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/digest.hpp"
@@ -73,6 +74,12 @@ void report_rows(const LogTable& table,
 }
 
 }  // namespace
+
+double TableFormat::since_begin(double stamp_s) const {
+  constexpr double kPerSecond = 1e6;
+  if (!*clock_begin_s) *clock_begin_s = stamp_s;
+  return std::round((stamp_s - **clock_begin_s) * kPerSecond) / kPerSecond;
+}
 
 void TableFormat::read(YamlMap& yaml, const std::filesystem::path& folder) {
   std::string name;

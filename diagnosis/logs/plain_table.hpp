@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,13 @@ struct TableFormat {
   /// All files read with this format and its copies, in order.
   std::shared_ptr<std::vector<std::filesystem::path>> files_named =
       std::make_shared<std::vector<std::filesystem::path>>();
+  /// Stamp [s] at which the clock of this format and its copies begins; empty before the first.
+  std::shared_ptr<std::optional<double>> clock_begin_s = std::make_shared<std::optional<double>>();
+
+  /// Returns the time [s] since the clock began, to a microsecond: what is added to all stamps
+  /// leaves no trace in it. The last digits of a sum decide whether a knot falls on a reading, and
+  /// much hangs on that. The clock begins with the first stamp asked for.
+  [[nodiscard]] double since_begin(double stamp_s) const;
 
   /// Reads the keys given in `yaml`; others keep their values. `folder`: base of relative paths.
   void read(YamlMap& yaml, const std::filesystem::path& folder);

@@ -116,6 +116,44 @@ TEST_F(PlainLogFiles, PositionsWithoutADirectionGetTheCourseAsAFirstGuess) {
   expect_words(log.notes.front(), "no heading");
 }
 
+// Bit for bit: knots fall on readings or beside them by the last digits of times.
+TEST_F(PlainLogFiles, WhatIsAddedToAllStampsLeavesNoTrace) {
+  std::string poses = "t,x,y\n";
+  std::string rows = "t,v,w\n";
+  for (int k = 0; k <= 400; ++k) {
+    const double t = 0.025 * k;
+    rows += std::to_string(t) + "," + std::to_string(2.0 + std::sin(t)) + ",0.1\n";
+    if (k % 8 == 0) poses += std::to_string(t) + "," + std::to_string(2.0 * t) + ",0\n";
+  }
+  write("p.csv", poses);
+  write("v.csv", rows);
+  const auto streams = [&](const std::string& offset) {
+    const std::string time = "time: {column: t, offset: " + offset + "}";
+    return read(kVehicle + "}\nposes: {file: p.csv, " + time + ", x: x, y: y}\n" +
+                "speed: {file: v.csv, " + time + ", value: {column: v, unit: m/s}}\n" +
+                "gyro: {file: v.csv, " + time + ", rate: w}\n")
+        .streams;
+  };
+  const MotionStreams expected = streams("0");
+  EXPECT_EQ(expected.gyro[3].t_s, 0.075);
+  for (const char* offset : {"0.001", "0.013", "0.05", "12345.678", "1000000000"}) {
+    SCOPED_TRACE(offset);
+    const MotionStreams s = streams(offset);
+    ASSERT_EQ(s.poses.size(), expected.poses.size());
+    ASSERT_EQ(s.wheels.size(), expected.wheels.size());
+    ASSERT_EQ(s.gyro.size(), expected.gyro.size());
+    for (std::size_t i = 0; i < s.poses.size(); ++i) {
+      EXPECT_EQ(s.poses[i].t_s, expected.poses[i].t_s);
+      EXPECT_EQ(s.poses[i].heading, expected.poses[i].heading);
+    }
+    for (std::size_t i = 0; i < s.wheels.size(); ++i) {
+      EXPECT_EQ(s.wheels[i].t_s, expected.wheels[i].t_s);
+      EXPECT_EQ(s.wheels[i].left_rad, expected.wheels[i].left_rad);
+      EXPECT_EQ(s.gyro[i].t_s, expected.gyro[i].t_s);
+    }
+  }
+}
+
 TEST_F(PlainLogFiles, OneSpeedSaysWhichWheelItIsAndSatellitesHaveNoMap) {
   write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,0,0\n");
   const std::string poses =
