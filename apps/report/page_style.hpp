@@ -51,6 +51,7 @@ table{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums}
 th{color:var(--soft);font-weight:500;text-align:left}
 th,td{padding:4px 16px 4px 0;border-bottom:1px solid var(--line);vertical-align:top;
 overflow-wrap:anywhere}
+.stacked th{white-space:nowrap}
 .warnings{margin:0;padding-left:18px;font-size:13px}
 code{font-size:.95em}
 @media(max-width:640px){.stacked thead{display:none}.stacked td{display:block;border:0;padding:2px 0}

@@ -192,6 +192,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
     const EvidencePlot plot = problem.evidence(nominal, result.model, v.cause.candidate);
     if (const std::string why = term ? "" : no_answer(v); !why.empty()) {
       d.unexplained.push_back(why);
+      std::erase(d.looked_for, v.cause.candidate.name);  // neither found nor fine
       continue;
     }
     if (term) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace roadbook {
@@ -118,15 +119,18 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
   double last_s = 0.0;            // the last good one
   std::size_t repeats = 0;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
-    const double t_s = spec_.table.since_begin(stamps[i]);
-    if (!t_s_.empty() && t_s <= t_s_.back()) {
-      const bool repeat = t_s == t_s_.back();
+    double t_s = spec_.table.since_begin(stamps[i]);
+    if (!t_s_.empty() && stamps[i] <= last_s) {
+      const bool repeat = stamps[i] == last_s;
       repeats += repeat ? 1 : 0;
       if (spec_.table.drop_repeats && repeat) continue;
       if (late.empty()) before_s = last_s;
       late.push_back(i);
       continue;
     }
+    // Stamps within a microsecond: a wrong unit, which is found by the log's length.
+    if (!t_s_.empty() && t_s <= t_s_.back())
+      t_s = std::nextafter(t_s_.back(), std::numeric_limits<double>::max());
     last_s = stamps[i];
     t_s_.push_back(t_s);
     kept.rows.push_back(std::move(table_.rows[i]));

@@ -11,7 +11,7 @@ namespace roadbook {
   const double sigma_side = 0.02 + 0.05 * distance_m;
   constexpr double kSigmaTilt = 0.01;
   Matrix6d information = Matrix6d::Zero();
-  const double sigma_up = 0.5 * sigma_side;  // slopes, and the pitch of the camera's mount
+  const double sigma_up = 2.0 * sigma_side;  // slopes, and the pitch of the camera's mount
   information(1, 1) = 1.0 / (sigma_side * sigma_side);
   information(2, 2) = 1.0 / (sigma_up * sigma_up);
   information(3, 3) = information(4, 4) = 1.0 / (kSigmaTilt * kSigmaTilt);

@@ -116,13 +116,14 @@ void VisualOdometry::State::follow_ground(VoWindow& window) {
   const auto first = result.keyframes.size() - size;
   const auto height_m = known_camera_height(rig);
   if (!height_m) return;
-  if (size > kFreePoses) {
+  if (size > kFreePoses + 1) {
     // A pose that is free no longer keeps what the ground says of it now: the adjustment has moved
     // it since it was the newest.
     const std::size_t settled = size - 1 - kFreePoses;
-    const auto scale = scale_by_ground_around(window, settled, *height_m);
-    auto& known = result.keyframes[first + settled].ground_log_scale;
-    known = scale ? std::optional(std::log(scale->scale)) : std::nullopt;
+    VoKeyframe& keyframe = result.keyframes[first + settled];
+    const auto there = scale_by_ground_around(window, settled, *height_m);
+    keyframe.ground_log_scale =
+        there && !keyframe.wheels ? std::optional(std::log(there->scale)) : std::nullopt;
   }
   const auto scale = scale_by_ground_around(window, size - 1, *height_m);
   if (!scale) return;

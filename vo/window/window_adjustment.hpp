@@ -30,7 +30,8 @@ struct VoWindow {
 struct WindowOptions {
   double sigma_px = 0.6;
   /// Width of the robust (Cauchy) cost. Wide ones let slightly wrong corners shorten the way: with
-  /// 2.5 px, a camera of 320x240 that sees little ground lost a third of its scale in a straight.
+  /// 2.5 px, a camera of 320x240 that sees little ground lost up to 40 % of its scale in a
+  /// straight.
   double width_px = 0.5;
   int iterations = 10;
   int least_views = 20;  ///< of a pose; one with fewer stays, with all before it

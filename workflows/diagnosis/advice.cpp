@@ -72,12 +72,27 @@ std::string filled(std::string_view sentence, const std::map<std::string, std::s
   return text;
 }
 
+// "add -3 ms to X" is "subtract 3 ms from X".
+std::string in_plain_words(const std::string& action) {
+  constexpr std::string_view kAddMinus = "add -";
+  constexpr std::string_view kTo = " to ";
+  const auto to = action.find(kTo);
+  if (!action.starts_with(kAddMinus) || to == std::string::npos) return action;
+  return "subtract " + action.substr(kAddMinus.size(), to - kAddMinus.size()) + " from " +
+         action.substr(to + kTo.size());
+}
+
 // Values of a vehicle are said to a ten thousandth.
-void add_vehicle(const WheelModel& vehicle, std::map<std::string, std::string>& values) {
-  values["left"] = fixed(vehicle.radius_left_m, 4);
-  values["right"] = fixed(vehicle.radius_right_m, 4);
-  values["track"] = fixed(vehicle.track_width_m, 4);
-  values["wheelbase"] = fixed(vehicle.wheelbase_m, 4);
+void add_vehicle(const WheelModel& vehicle,
+                 const WheelModel& stated,
+                 std::map<std::string, std::string>& values) {
+  const auto add = [&](const char* key, double now_m, double stated_m) {
+    values[key] = fixed(now_m, 4) + " m (stated: " + fixed(stated_m, 4) + " m)";
+  };
+  add("left", vehicle.radius_left_m, stated.radius_left_m);
+  add("right", vehicle.radius_right_m, stated.radius_right_m);
+  add("track", vehicle.track_width_m, stated.track_width_m);
+  add("wheelbase", vehicle.wheelbase_m, stated.wheelbase_m);
 }
 
 void add_keys(bool of_log, std::map<std::string, std::string>& values) {
@@ -94,6 +109,15 @@ std::string error_text(const ReckoningError& error) {
   const double cm = 100.0 * error.position_m;
   const double deg = kDegrees * error.heading_rad;
   return fixed(cm, cm < 10.0 ? 1 : 0) + " cm and " + fixed(deg, deg < 1.0 ? 2 : 1) + " deg";
+}
+
+// What one correction gains, with all others made.
+std::string gain_text(const ReckoningError& without, const ReckoningError& with) {
+  const std::string before = error_text(without);
+  const std::string after = error_text(with);
+  if (before == after) return "Dead reckoning is the same with and without this correction";
+  return "Without this correction, dead reckoning is off by " + before + " after " +
+         fixed(without.over_s, 0) + " s; with it, by " + after;
 }
 
 // With all causes that hold everywhere and in all drives: a new value is right together with the
@@ -160,12 +184,12 @@ std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehi
     if (stated)
       add_vehicle(c.session.empty() ? corrected_by(d, stated->wheels)
                                     : corrected(stated->wheels, c.effect, c.size),
-                  values);
+                  stated->wheels, values);
     advice.fault = c.effect;
     if (words) {
       const std::string_view fault = sign < 0.0 ? words->less : words->more;
       advice.fault = capitalised(filled(fault, values));
-      advice.action = capitalised(filled(words->act, values));
+      advice.action = capitalised(in_plain_words(filled(words->act, values)));
       advice.of_place = words->of_place;
     }
     if (!c.session.empty()) advice.fault += " (in " + c.session + ")";
@@ -177,9 +201,7 @@ std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehi
       advice.action += advice.action.empty() ? capitalised(c.separating) : c.separating;
     }
     if (c.reckoned_without && d.reckoned_after)
-      advice.gain = "Uncorrected, dead reckoning is off by " + error_text(*c.reckoned_without) +
-                    " after " + fixed(c.reckoned_without->over_s, 0) + " s, instead of " +
-                    error_text(*d.reckoned_after);
+      advice.gain = gain_text(*c.reckoned_without, *d.reckoned_after);
     all.push_back(std::move(advice));
   }
   return all;
@@ -187,10 +209,10 @@ std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehi
 
 std::string reckoning_text(const Diagnosis& d) {
   if (!d.reckoned_before || !d.reckoned_after) return "";
-  return "Dead reckoning over " + fixed(d.reckoned_before->over_s, 0) + " s is off by " +
-         error_text(*d.reckoned_before) + " (root mean square of " +
-         std::to_string(d.reckoned_before->pieces) + " pieces), with all corrections by " +
-         error_text(*d.reckoned_after);
+  return "After " + fixed(d.reckoned_before->over_s, 0) + " s, dead reckoning is off by " +
+         error_text(*d.reckoned_before) + "; with all corrections, by " +
+         error_text(*d.reckoned_after) + " (root mean square of " +
+         std::to_string(d.reckoned_before->pieces) + " pieces of the drive)";
 }
 
 std::vector<std::string> checked_and_fine(const Diagnosis& d,

@@ -27,7 +27,7 @@ struct Advice {
   std::string size;    ///< "1.87 % (1.66 to 2.08 %)", in the units of a workshop
   std::string certainty;  ///< "sure", "likely", or the names that explain the drive as well
   std::string action;     ///< "Set ...", or the drive that decides; empty: nothing is known to help
-  std::string gain;       ///< "Left uncorrected: 34 cm and 1.2 deg after 5 s"; empty: not measured
+  std::string gain;       ///< what this correction gains in dead reckoning; empty: not measured
   bool of_place = false;  ///< a feature of the place, not a fault of a sensor
 };
 
@@ -36,8 +36,8 @@ struct Advice {
 [[nodiscard]] std::vector<Advice> advice_of(const Diagnosis& d,
                                             const std::optional<StatedVehicle>& stated);
 
-/// "Dead reckoning over 5 s is off by 34 cm and 1.2 deg (root mean square of 120 pieces), by 2 cm
-/// and 0.1 deg with all corrections"; empty if it was not measured.
+/// "After 5 s, dead reckoning is off by 34 cm and 1.2 deg; with all corrections, by 2.0 cm and 0.10
+/// deg (root mean square of 120 pieces of the drive)"; empty if it was not measured.
 [[nodiscard]] std::string reckoning_text(const Diagnosis& d);
 
 /// Nouns of the effects that were looked for, that this drive shows, and that it does not have.

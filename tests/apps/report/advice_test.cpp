@@ -45,11 +45,12 @@ TEST(Advice, SaysTheNewValueInTheKeysOfItsFile) {
   EXPECT_EQ(drive.size, "2.00 % (1.80 to 2.20 %)");
   EXPECT_EQ(drive.certainty, "sure");
   EXPECT_EQ(drive.action,
-            "Set `wheel_radius_left` to 0.3162 m and `wheel_radius_right` to 0.3060 m");
+            "Set `wheel_radius_left` to 0.3162 m (stated: 0.3100 m) and `wheel_radius_right` to "
+            "0.3060 m (stated: 0.3000 m)");
   StatedVehicle log = stated_vehicle();
   log.of_log = true;
   EXPECT_EQ(advice_for(cause("wheels0.track_width", -0.1, 0.01), log).action,
-            "Set `track_width_m` to 1.3500 m");
+            "Set `track_width_m` to 1.3500 m (stated: 1.5000 m)");
   EXPECT_EQ(advice_for(cause("wheels0.radius", 0.02, 0.002), std::nullopt).action, "");
   const Advice place = advice_for(cause("cam.position", 0.3, 0.01), log);
   EXPECT_EQ(place.fault, "The reference's sensor is mounted farther forward than stated");
@@ -75,7 +76,7 @@ TEST(Advice, HasWordsForEitherSign) {
   const Advice late = advice_for(cause("wheels0.latency", 0.03, 0.001), stated_vehicle());
   EXPECT_EQ(late.fault, "The wheels are stamped too late");
   EXPECT_EQ(late.size, "30.0 ms (29.0 to 31.0 ms)");
-  EXPECT_EQ(late.action, "Add -30.0 ms to `time_offset` of the wheels");
+  EXPECT_EQ(late.action, "Subtract 30.0 ms from `time_offset` of the wheels");
   const Advice early = advice_for(cause("wheels0.latency", -0.03, 0.001), stated_vehicle());
   EXPECT_EQ(early.fault, "The wheels are stamped too early");
   EXPECT_EQ(early.size, "30.0 ms (29.0 to 31.0 ms)");
@@ -83,6 +84,28 @@ TEST(Advice, HasWordsForEitherSign) {
   const Advice camera = advice_for(cause("cam2.pitch", -0.0174533, 0.0017), std::nullopt);
   EXPECT_EQ(camera.fault, "Camera cam2 looks farther down than stated");
   EXPECT_EQ(camera.size.substr(0, 9), "1.000 deg");
+}
+
+TEST(Advice, SaysWhatACorrectionGainsAndWhereItGainsNothing) {
+  Diagnosis d;
+  d.causes.push_back(cause("imu0.gyro_scale", -0.03, 0.001));
+  d.causes.push_back(cause("steering0.offset", 0.02, 0.001));
+  d.reckoned_before = ReckoningError{5.0, 45, 0.28, 0.04};
+  d.reckoned_after = ReckoningError{5.0, 45, 0.044, 0.001};
+  d.causes[0].reckoned_without = d.reckoned_before;
+  d.causes[1].reckoned_without = d.reckoned_after;
+  const auto advice = advice_of(d, stated_vehicle());
+  EXPECT_EQ(advice[0].action,
+            "Divide the turn rates by 0.9700; a tilted mount reads too small as well");
+  EXPECT_EQ(
+      advice[0].gain,
+      "Without this correction, dead reckoning is off by 28 cm and 2.3 deg after 5 s; with it, "
+      "by 4.4 cm and 0.06 deg");
+  EXPECT_EQ(advice[1].gain, "Dead reckoning is the same with and without this correction");
+  EXPECT_EQ(
+      reckoning_text(d),
+      "After 5 s, dead reckoning is off by 28 cm and 2.3 deg; with all corrections, by 4.4 cm "
+      "and 0.06 deg (root mean square of 45 pieces of the drive)");
 }
 
 // Of the whole catalogue, for both signs: no effect without words, no name left in braces.
@@ -138,7 +161,7 @@ TEST(Advice, ThePageBeginsWithFaultSizeAndWhatToDo) {
   d.reckoned_after = ReckoningError{5.0, 60, 0.021, 0.001};
   const std::string page = diagnosis_page(d, "drive", stated_vehicle());
   const std::string first = page.substr(0, page.find("<details>"));
-  EXPECT_NE(first.find("The gyro turns to the left at rest"), std::string::npos);
+  EXPECT_NE(first.find("The gyro reads a left turn at rest"), std::string::npos);
   EXPECT_NE(first.find("off by 34 cm and 1.2 deg"), std::string::npos);
   EXPECT_NE(first.find("2.1 cm and 0.06 deg"), std::string::npos);
   for (const char* word : {"nats", "p = ", "evidence", "imu0.gyro_bias"})

@@ -136,6 +136,13 @@ TEST_F(PlainLogFiles, WhatIsAddedToAllStampsLeavesNoTrace) {
   };
   const MotionStreams expected = streams("0");
   EXPECT_EQ(expected.gyro[3].t_s, 0.075);
+  // Finer than a microsecond: still in order.
+  write("u.csv", "t,w\n0,0\n2e-7,0\n4e-7,0\n");
+  const MotionStreams fine = read(kVehicle + "}\nposes: {file: p.csv, time: t, x: x, y: y}\n" +
+                                  "gyro: {file: u.csv, time: t, rate: w}\n")
+                                 .streams;
+  ASSERT_EQ(fine.gyro.size(), 3U);
+  EXPECT_LT(fine.gyro[1].t_s, fine.gyro[2].t_s);
   for (const char* offset : {"0.001", "0.013", "0.05", "12345.678", "1000000000"}) {
     SCOPED_TRACE(offset);
     const MotionStreams s = streams(offset);
