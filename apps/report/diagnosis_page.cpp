@@ -166,7 +166,11 @@ std::string place_section(const std::vector<Advice>& advice) {
 std::string fine_section(const Diagnosis& d, const std::optional<StatedVehicle>& stated) {
   const std::vector<std::string> nouns = checked_and_fine(d, stated);
   if (nouns.empty()) return "";
-  return section("Checked and fine", "<p>" + escaped(capitalised(listed(nouns))) + ".</p>\n");
+  return section(
+      "Checked and fine",
+      "<p>" + escaped(capitalised(listed(nouns))) +
+          ".</p>\n<p>An error in any of them would have shown in this drive at twice its plausible "
+          "size (<code>roadbook diagnose --list-effects</code> prints the sizes).</p>\n");
 }
 
 std::string blind_section(const Diagnosis& d, const std::optional<StatedVehicle>& stated) {

@@ -51,7 +51,7 @@ TEST(MotionDoubts, NameTheSensorWithTheSizeAndItsSign) {
        {Case{"wheels0.left_radius", -0.02, "wheels0", "the left rear wheel is smaller than stated"},
         Case{"wheels0.right_radius", 0.02, "wheels0", "the right rear wheel is larger than stated"},
         Case{"wheels0.latency", 0.1, "wheels0", "the wheels are stamped too late"},
-        Case{"imu0.gyro_bias", -0.005, "imu0", "the gyro turns to the right at rest"}}) {
+        Case{"imu0.gyro_bias", -0.005, "imu0", "the gyro reads a right turn at rest"}}) {
     SCOPED_TRACE(c.effect);
     const test::TemporaryFolder folder;
     const Mapped m = mapped(drive_with(c.effect, c.size, 0), folder.path() / "drive");

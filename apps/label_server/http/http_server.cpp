@@ -284,7 +284,7 @@ void HttpServer::start(HttpHandler handler) {
   Impl& s = *impl_;
 #ifdef __GLIBC__
   // glibc gives threads up to eight heaps a core, and each keeps room for the largest answer that
-  // one of its threads ever made: 300 MB with 10,000 labels, where two heaps hold 150 MB.
+  // one of its threads ever made: 300 MB with 10,000 labels, where two heaps hold 180 MB.
   mallopt(M_ARENA_MAX, 2);
 #endif
   s.handler = std::move(handler);
