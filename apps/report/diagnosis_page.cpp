@@ -54,9 +54,8 @@ std::string figure(const EvidencePlot& plot) {
          escaped(plot.unit.empty() ? "standard deviations" : plot.unit) + "] against " +
          escaped(plot.covariate) +
          ". Orange: as the files state it. Blue: with all corrections. By chance, 95 % of the blue "
-         "points lie within the band. The fitted path takes up a part of a fault, so that the "
-         "orange "
-         "line can show less than its size.</figcaption></figure>\n";
+         "points lie within the band. The fitted path takes up a part of a fault: the orange line "
+         "may show less than its size.</figcaption></figure>\n";
 }
 
 std::string gain_text(const HeldOutGain& gain) {

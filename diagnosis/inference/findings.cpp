@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-// Of a size with a held-out gain that is not significant: with less, the effect is not named.
+// Least size, in its standard deviations, of an effect that is named without a significant gain.
 constexpr double kLeastSigmas = 3.0;
 
 FoundCause found_cause(const CauseProblem& problem, const AcceptedEffect& v) {
@@ -102,7 +102,7 @@ std::string no_answer(const AcceptedEffect& v) {
         c.name.c_str(), size, unit_after(c.unit).c_str());
     return text;
   }
-  // Its p-value takes rows for independent; sigma and gain allow for errors that last.
+  // The p-value takes rows for independent; sigma and gain allow for errors that last.
   if (v.gain.low <= 0.0 && std::abs(size) < kLeastSigmas * v.sigma) {
     std::snprintf(text, sizeof text,
                   "resembles %s = %.3g%s, but this size is only %.1f standard deviations and its "

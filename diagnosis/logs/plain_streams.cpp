@@ -128,7 +128,8 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
       late.push_back(i);
       continue;
     }
-    // Stamps within a microsecond: a wrong unit, which is found by the log's length.
+    // Stamps within one microsecond stay in order. Their unit is wrong, which stream_faults
+    // reports.
     if (!t_s_.empty() && t_s <= t_s_.back())
       t_s = std::nextafter(t_s_.back(), std::numeric_limits<double>::max());
     last_s = stamps[i];

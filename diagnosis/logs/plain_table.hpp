@@ -29,9 +29,9 @@ struct TableFormat {
   /// Stamp [s] at which the clock of this format and its copies begins; empty before the first.
   std::shared_ptr<std::optional<double>> clock_begin_s = std::make_shared<std::optional<double>>();
 
-  /// Returns the time [s] since the clock began, to a microsecond: what is added to all stamps
-  /// leaves no trace in it. The last digits of a sum decide whether a knot falls on a reading, and
-  /// much hangs on that. The clock begins with the first stamp asked for.
+  /// Returns the time [s] since the clock began, in whole microseconds, so that a shift of all
+  /// stamps changes nothing: the last digits of times decide whether a knot of the fit falls on a
+  /// reading. The first call begins the clock.
   [[nodiscard]] double since_begin(double stamp_s) const;
 
   /// Reads the keys given in `yaml`; others keep their values. `folder`: base of relative paths.

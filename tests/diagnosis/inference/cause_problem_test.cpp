@@ -132,6 +132,7 @@ void expect_named_only_if_plausible(Eigen::Index rows, bool place) {
     EXPECT_TRUE(d.causes.empty());
     ASSERT_FALSE(d.unexplained.empty());
     EXPECT_TRUE(d.unexplained[0].starts_with("resembles a.part = ")) << d.unexplained[0];
+    EXPECT_EQ(std::count(d.looked_for.begin(), d.looked_for.end(), "a.part"), 0);  // nor is it fine
   }
 }
 
