@@ -104,9 +104,11 @@ void note_gaps(const std::vector<StreamGap>& gaps,
 }  // namespace
 
 void check_duration(double duration_s, const std::string& name, const DiagnosisOptions& options) {
+  constexpr double kNoDrive = 0.1;  // [s]
   if (duration_s < options.min_duration_s)
     refuse(name, "duration", rounded_down(duration_s) + " s",
-           "at least " + rounded(options.min_duration_s) + " s");
+           "at least " + rounded(options.min_duration_s) + " s" +
+               (duration_s < kNoDrive ? " (check the unit of the stamps)" : ""));
 }
 
 void check_streams(const MotionStreams& s,

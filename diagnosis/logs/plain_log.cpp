@@ -120,7 +120,7 @@ class LogReader {
     for (std::size_t i = 0; i < n; ++i)
       poses.push_back({table.stamps()[i], x[i], y[i], derived ? 0.0 : heading[i]});
     read_attitudes(table, yaml);
-    if (drop_m > 0.0) drop_jumps(drop_m);
+    if (drop_m > 0.0) drop_jumps(yaml, drop_m);
     if (derived) {
       derive_course(poses, chord);
       log_.streams.poses_have_heading = false;
@@ -198,13 +198,18 @@ class LogReader {
   }
 
   // Drops jumps of the receiver: poses that no vehicle could reach from the last kept one.
-  void drop_jumps(double max_speed) {
+  void drop_jumps(YamlMap& yaml, double max_speed) {
     auto& poses = log_.streams.poses;
     std::vector<PoseSample> kept;
     for (const PoseSample& p : poses)
       if (kept.empty() || std::hypot(p.x - kept.back().x, p.y - kept.back().y) <=
                               max_speed * (p.t_s - kept.back().t_s))
         kept.push_back(p);
+    if (poses.size() > 1 && kept.size() < 2)
+      yaml.report("drop_jumps_m_s",
+                  std::to_string(max_speed) + " m/s, which leaves one pose of " +
+                      std::to_string(poses.size()),
+                  "a speed that the car reaches (check the units of time and positions)");
     if (kept.size() < poses.size())
       log_.notes.push_back("poses: " + std::to_string(poses.size() - kept.size()) +
                            " poses dropped that need a speed above drop_jumps_m_s");

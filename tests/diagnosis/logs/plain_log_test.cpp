@@ -127,14 +127,21 @@ TEST_F(PlainLogFiles, WhatIsAddedToAllStampsLeavesNoTrace) {
   }
   write("p.csv", poses);
   write("v.csv", rows);
-  const auto streams = [&](const std::string& offset) {
+  std::string ranges = "t,id,r\n";
+  for (int k = 0; k < 60; ++k) ranges += std::to_string(1.013 + 0.1 * k) + ",7,4.5\n";
+  write("b.csv", ranges);
+  write("places.csv", "id,x,y\n7,5,2\n");
+  const auto log = [&](const std::string& offset) {
     const std::string time = "time: {column: t, offset: " + offset + "}";
     return read(kVehicle + "}\nposes: {file: p.csv, " + time + ", x: x, y: y}\n" +
                 "speed: {file: v.csv, " + time + ", value: {column: v, unit: m/s}}\n" +
-                "gyro: {file: v.csv, " + time + ", rate: w}\n")
-        .streams;
+                "gyro: {file: v.csv, " + time + ", rate: w}\n" + "beacons: {file: b.csv, " + time +
+                ", id: id, range: r, places: {file: places.csv, id: id, x: x, y: y}}\n");
   };
-  const MotionStreams expected = streams("0");
+  const PlainLog unshifted = log("0");
+  const MotionStreams& expected = unshifted.streams;
+  const auto& beacons = unshifted.readings.beacons.samples;
+  ASSERT_EQ(beacons.size(), 60U);
   EXPECT_EQ(expected.gyro[3].t_s, 0.075);
   // Finer than a microsecond: still in order.
   write("u.csv", "t,w\n0,0\n2e-7,0\n4e-7,0\n");
@@ -145,7 +152,13 @@ TEST_F(PlainLogFiles, WhatIsAddedToAllStampsLeavesNoTrace) {
   EXPECT_LT(fine.gyro[1].t_s, fine.gyro[2].t_s);
   for (const char* offset : {"0.001", "0.013", "0.05", "12345.678", "1000000000"}) {
     SCOPED_TRACE(offset);
-    const MotionStreams s = streams(offset);
+    const PlainLog shifted = log(offset);
+    const MotionStreams& s = shifted.streams;
+    ASSERT_EQ(shifted.readings.beacons.samples.size(), beacons.size());
+    for (std::size_t i = 0; i < beacons.size(); ++i) {
+      EXPECT_EQ(shifted.readings.beacons.samples[i].t_s, beacons[i].t_s);
+      EXPECT_EQ(shifted.readings.beacons.samples[i].expected_m, beacons[i].expected_m);
+    }
     ASSERT_EQ(s.poses.size(), expected.poses.size());
     ASSERT_EQ(s.wheels.size(), expected.wheels.size());
     ASSERT_EQ(s.gyro.size(), expected.gyro.size());
@@ -208,6 +221,16 @@ TEST_F(PlainLogFiles, FaultsNameFileLineAndField) {
   expect_words(unit, of_unit);
   EXPECT_EQ(unit.find(of_unit), unit.rfind(of_unit)) << "said once";
   expect_words(refusal(gyro), "poses: got nothing");
+}
+
+TEST_F(PlainLogFiles, AWrongUnitOfTimeThatLeavesNoPoseIsSaid) {
+  write("p.csv", "t,x,y,h\n0,0,0,0\n1,5,0,0\n2,10,0,0\n");
+  expect_words(
+      refusal(kVehicle +
+              "}\nposes: {file: p.csv, time: {column: t, unit: ms}, x: x, y: y, heading: h, "
+              "drop_jumps_m_s: 12}\n"),
+      "poses.drop_jumps_m_s: got 12.000000 m/s, which leaves one pose of 3, want a speed "
+      "that the car reaches (check the units of time and positions)");
 }
 
 TEST_F(PlainLogFiles, RepeatedStampsAreDroppedWhereTheDescriptionSaysSoAtTheTopOrInTheStream) {
