@@ -185,12 +185,15 @@ TEST(Layout, EveryHeaderIsGuarded) {
 TEST(Layout, SourcesAreFormatted) {
   if (std::system("clang-format --version > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "clang-format is not installed";
-  std::string command = "cd '" + kRoot.string() + "' && clang-format --dry-run --Werror";
   std::vector<std::string> folders{"tests", "bench"};
   for (const auto& [folder, allowed] : kMayInclude) folders.push_back(folder);
-  for (const std::string& folder : folders)
-    for (const fs::path& file : sources_in(folder)) command += " '" + file.string() + "'";
-  EXPECT_EQ(std::system(command.c_str()), 0) << "run clang-format -i on the files named above";
+  for (const std::string& folder : folders) {
+    // Linux takes at most 128 KiB in one command, so that long paths of a clone must not count.
+    std::string command = "cd '" + kRoot.string() + "' && clang-format --dry-run --Werror";
+    for (const fs::path& file : sources_in(folder))
+      command += " '" + fs::relative(file, kRoot).string() + "'";
+    EXPECT_EQ(std::system(command.c_str()), 0) << "run clang-format -i on the files named above";
+  }
 }
 
 }  // namespace
