@@ -9,21 +9,23 @@ void BundleSystem::solve_columns(BlockCholesky::Panel& poses, BlockCholesky::Pan
   };
   const auto pose_rows = [&](std::size_t v) { return poses.middleRows<6>(row_of(v)); };
   parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
-    point_rows(p) = L_inv_[p].lazyProduct(point_rows(p)).eval();
+    const Eigen::Matrix3d V_inverse = L_inv_[p].transpose() * L_inv_[p];
+    point_rows(p) = V_inverse.lazyProduct(point_rows(p)).eval();
   });
   parallel_for(U_.size(), options_.num_threads, [&](std::size_t v) {
     auto b = pose_rows(v);
     for (std::size_t k = layout_.pose_link_begin[v]; k < layout_.pose_link_begin[v + 1]; ++k) {
       const std::size_t link = layout_.pose_links[k];
-      b -= Y_[link].lazyProduct(point_rows(at(layout_.link_point[link])));
+      b -= W_[link].lazyProduct(point_rows(at(layout_.link_point[link])));
     }
   });
   S_.solve(poses, options_.num_threads);
   parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
-    auto b = point_rows(p);
+    const Eigen::Matrix3d V_inverse = L_inv_[p].transpose() * L_inv_[p];
+    BlockCholesky::Panel moved = BlockCholesky::Panel::Zero(3, points.cols());
     for (std::size_t l = layout_.link_begin[p]; l < layout_.link_begin[p + 1]; ++l)
-      b -= Y_[l].transpose().lazyProduct(pose_rows(at(layout_.link_variable[l])));
-    b = L_inv_[p].transpose().lazyProduct(b).eval();
+      moved += W_[l].transpose().lazyProduct(pose_rows(at(layout_.link_variable[l])));
+    point_rows(p) -= V_inverse.lazyProduct(moved);
   });
 }
 

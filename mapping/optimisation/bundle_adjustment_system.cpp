@@ -66,8 +66,7 @@ BundleSystem::BundleSystem(const BundleProblem& problem,
       V_(problem.points.size()),
       b_p_(problem.points.size()),
       U_(layout.pose_of.size()),
-      L_inv_(problem.points.size()),
-      Y_(layout.link_variable.size()) {
+      L_inv_(problem.points.size()) {
   for (const ScaleParameter& scale : problem.scales)
     scale_column_.push_back(scale.fixed ? -1 : static_cast<int>(scale_count_++));
 }
@@ -122,8 +121,6 @@ void BundleSystem::eliminate_points(double lambda) {
     const Eigen::LLT<Eigen::Matrix3d> llt(damped);
     // A point that its observations do not determine stays where it is (L^-1 = 0).
     if (llt.info() == Eigen::Success) L_inv_[p] = llt.matrixL().solve(Eigen::Matrix3d::Identity());
-    for (std::size_t l = layout_.link_begin[p]; l < layout_.link_begin[p + 1]; ++l)
-      Y_[l].noalias() = W_[l] * L_inv_[p].transpose();
   });
 }
 
@@ -140,9 +137,11 @@ void BundleSystem::assemble_column(std::size_t v, double lambda, std::vector<Mat
   for (std::size_t k = layout_.pose_link_begin[v]; k < layout_.pose_link_begin[v + 1]; ++k) {
     const std::size_t link = layout_.pose_links[k];
     const std::size_t p = at(layout_.link_point[link]);
+    const Matrix63d W_V_inverse = (W_[link] * L_inv_[p].transpose()) * L_inv_[p];
     for (std::size_t l = layout_.link_begin[p]; l < layout_.link_begin[p + 1]; ++l) {
       const int row = S_.position(layout_.link_variable[l]);
-      if (row >= position) subtract_outer_63(Y_[l].data(), Y_[link].data(), place[at(row)]->data());
+      if (row >= position)
+        subtract_outer_63(W_[l].data(), W_V_inverse.data(), place[at(row)]->data());
     }
   }
 }
@@ -190,7 +189,7 @@ bool BundleSystem::solve(double lambda, BundleStep& step) {
     for (std::size_t k = layout_.pose_link_begin[v]; k < layout_.pose_link_begin[v + 1]; ++k) {
       const std::size_t link = layout_.pose_links[k];
       const std::size_t p = at(layout_.link_point[link]);
-      b.noalias() -= Y_[link] * (L_inv_[p] * b_p_[p]);
+      b.noalias() -= W_[link] * (L_inv_[p].transpose() * (L_inv_[p] * b_p_[p]));
     }
     step.poses.segment<6>(row_of(v)) = b;
   });
@@ -205,11 +204,11 @@ void BundleSystem::back_substitute(double lambda, BundleStep& step) const {
   step.points.resize(problem_.points.size());
   std::vector<double> gain(problem_.points.size(), 0.0);
   parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
-    Eigen::Vector3d reduced = L_inv_[p] * b_p_[p];
+    Eigen::Vector3d reduced = b_p_[p];
     for (std::size_t l = layout_.link_begin[p]; l < layout_.link_begin[p + 1]; ++l)
       reduced.noalias() -=
-          Y_[l].transpose() * step.poses.segment<6>(row_of(at(layout_.link_variable[l])));
-    const Eigen::Vector3d d = L_inv_[p].transpose() * reduced;
+          W_[l].transpose() * step.poses.segment<6>(row_of(at(layout_.link_variable[l])));
+    const Eigen::Vector3d d = L_inv_[p].transpose() * (L_inv_[p] * reduced);
     step.points[p] = d;
     gain[p] = d.dot(b_p_[p]);
     for (int i = 0; i < 3; ++i) gain[p] += damping(lambda, V_[p](i, i)) * d(i) * d(i);

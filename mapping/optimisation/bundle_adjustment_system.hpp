@@ -38,6 +38,11 @@ class BundleSystem {
                const BundleOptions& options);
 
   void linearise(const BundleState& state);
+  /// Frees what only `linearise` needs. It must not be called again.
+  void forget_jacobians() {
+    J_pose_ = {};
+    r_ = {};
+  }
   /// Solves (H + lambda * diag(H)) dx = b; false if the matrix is not positive definite.
   bool solve(double lambda, BundleStep& step);
   /// Solves the same system for other right-hand sides, in place, with the factor (and the lambda)
@@ -98,7 +103,6 @@ class BundleSystem {
 
   // For one lambda: V + damping = L L^T.
   std::vector<Eigen::Matrix3d> L_inv_;  ///< L^-1 of each point
-  std::vector<Matrix63d> Y_;            ///< W L^-T of each link
   Eigen::MatrixXd X_;                   ///< S^-1 border
   Eigen::MatrixXd scale_inverse_;
 };

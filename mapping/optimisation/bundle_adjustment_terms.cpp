@@ -67,6 +67,7 @@ void BundleLayout::add_terms(const BundleProblem& problem,
   std::vector<std::size_t> order;
   group_by(key, problem.points.size(), begin, order);
   point_free.resize(problem.points.size());
+  terms.reserve(order.size() + problem.points.size());
   term_begin.push_back(0);
   for (std::size_t p = 0; p < problem.points.size(); ++p) {
     const BundlePoint& point = problem.points[p];

@@ -34,6 +34,24 @@ std::vector<int> tied_poses(const BundleProblem& problem, const BundleLayout& la
   return sets.numbers();
 }
 
+// Gives the poses of a problem back as fixed or free as they were. A copy of the problem of a large
+// map would not fit beside its factor.
+class FixedPoses {
+ public:
+  explicit FixedPoses(BundleProblem& problem) : problem_(problem) {
+    for (const BundlePose& pose : problem.poses) fixed_.push_back(pose.fixed);
+  }
+  ~FixedPoses() {
+    for (std::size_t i = 0; i < fixed_.size(); ++i) problem_.poses[i].fixed = fixed_[i];
+  }
+  FixedPoses(const FixedPoses&) = delete;
+  FixedPoses& operator=(const FixedPoses&) = delete;
+
+ private:
+  BundleProblem& problem_;
+  std::vector<bool> fixed_;
+};
+
 // Fixes the first pose of each piece. A set of poses that is not tied to it is fixed too, so that
 // the system can be solved, and its poses are `lost`.
 std::vector<std::uint8_t> fix_gauges(const std::vector<int>& tied,
@@ -114,7 +132,7 @@ void ClusterOptions::check() const {
   require_option(sampled_poses >= 1, "sampled_poses", sampled_poses, "at least 1");
 }
 
-ClusterCovariance cluster_covariance(const BundleProblem& given,
+ClusterCovariance cluster_covariance(BundleProblem& problem,
                                      const std::vector<std::uint8_t>& inlier,
                                      const std::vector<int>& piece,
                                      const BundleOptions& options,
@@ -122,23 +140,24 @@ ClusterCovariance cluster_covariance(const BundleProblem& given,
                                      const std::vector<CommonError>& suspected) {
   options.check();
   clusters.check();
-  check_bundle(given);
+  check_bundle(problem);
   std::vector<std::uint8_t> active = inlier;
-  if (active.empty()) active.assign(given.observations.size(), 1);
-  ROADBOOK_ASSERT(active.size() == given.observations.size());
-  ROADBOOK_ASSERT(piece.size() == given.poses.size());
+  if (active.empty()) active.assign(problem.observations.size(), 1);
+  ROADBOOK_ASSERT(active.size() == problem.observations.size());
+  ROADBOOK_ASSERT(piece.size() == problem.poses.size());
 
   ClusterCovariance result;
-  result.poses.assign(given.poses.size(), unknown_covariance<Matrix6d>());
-  result.scale_sigmas.assign(given.scales.size(), std::numeric_limits<double>::quiet_NaN());
-  const std::vector<std::uint8_t> kept = points_with_two(given, active);
-  BundleProblem problem = given;
-  const std::vector<std::uint8_t> lost =
-      fix_gauges(tied_poses(given, BundleLayout(given, options, active, kept)), piece, problem);
+  result.poses.assign(problem.poses.size(), unknown_covariance<Matrix6d>());
+  result.scale_sigmas.assign(problem.scales.size(), std::numeric_limits<double>::quiet_NaN());
+  const std::vector<std::uint8_t> kept = points_with_two(problem, active);
+  const std::vector<int> tied = tied_poses(problem, BundleLayout(problem, options, active, kept));
+  const FixedPoses as_given(problem);
+  const std::vector<std::uint8_t> lost = fix_gauges(tied, piece, problem);
   const BundleLayout layout(problem, options, active, kept);
   const BundleState state = state_of(problem);
   BundleSystem system(problem, layout, options);
   system.linearise(state);
+  system.forget_jacobians();
   BundleStep step;
   Eigen::MatrixXd scales;
   if (!system.solve(0.0, step)) {
@@ -154,7 +173,7 @@ ClusterCovariance cluster_covariance(const BundleProblem& given,
   result.effective_clusters = effective_clusters(data, system, drawn.poses);
   const double factor = few_clusters_factor(result.effective_clusters);
   const std::vector<CommonMove> moves = moves_of(data, system, suspected);
-  for (std::size_t i = 0; i < given.poses.size(); ++i) {
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
     if (lost[i] != 0) continue;
     const int v = layout.variable[i];
     if (v < 0) {
@@ -169,9 +188,9 @@ ClusterCovariance cluster_covariance(const BundleProblem& given,
     if (!result.poses[i].allFinite()) result.poses[i] = unknown_covariance<Matrix6d>();
   }
   std::size_t row = 0;
-  for (std::size_t s = 0; s < given.scales.size(); ++s) {
+  for (std::size_t s = 0; s < problem.scales.size(); ++s) {
     result.scale_sigmas[s] = 0.0;
-    if (given.scales[s].fixed) continue;
+    if (problem.scales[s].fixed) continue;
     double variance = factor * drawn.scale_variances[row];
     for (const CommonMove& move : moves) {
       const double x = move.scales[static_cast<Eigen::Index>(row)];

@@ -46,8 +46,9 @@ struct ClusterCovariance {
 /// Covariances at the state of `problem` (as bundle_adjust left it) with the observations of
 /// `inlier` (all, if empty). `piece` of each pose: the first pose of each piece is its gauge, with
 /// covariance zero. Poses that no terms tie to that pose are unknown. `suspected`: errors that may
-/// be in the pixels. The same bytes on any number of threads.
-[[nodiscard]] ClusterCovariance cluster_covariance(const BundleProblem& problem,
+/// be in the pixels. During the call more poses of `problem` are fixed; in the end they are as
+/// before. The same bytes on any number of threads.
+[[nodiscard]] ClusterCovariance cluster_covariance(BundleProblem& problem,
                                                    const std::vector<std::uint8_t>& inlier,
                                                    const std::vector<int>& piece,
                                                    const BundleOptions& options,

@@ -13,34 +13,43 @@ namespace roadbook {
 namespace {
 
 constexpr int kDraws = 64;  // one bit of a random word each
+constexpr int kHalf = kDraws / 2;
 using Panel = BlockCholesky::Panel;
-using Signs = Eigen::Matrix<double, 1, kDraws>;
+using Signs = Eigen::Matrix<double, 1, kHalf>;
 
-Signs signs_of(std::uint64_t word) {
+// Some draws that one thread makes: half the columns of a chunk.
+struct Draws {
+  int chunk;
+  int half;
+};
+
+Signs signs_of(std::uint64_t word, Draws draws) {
   Signs signs;
-  for (int k = 0; k < kDraws; ++k) signs(k) = (word >> k & 1U) != 0 ? 1.0 : -1.0;
+  for (int k = 0; k < kHalf; ++k)
+    signs(k) = (word >> (kHalf * draws.half + k) & 1U) != 0 ? 1.0 : -1.0;
   return signs;
 }
 
-Random stream(const ClusterData& data, const char* name, std::uint64_t index, int chunk) {
-  return {data.clusters.seed + 1000 * static_cast<std::uint64_t>(chunk), name, index};
+Random stream(const ClusterData& data, const char* name, std::uint64_t index, Draws draws) {
+  return {data.clusters.seed + 1000 * static_cast<std::uint64_t>(draws.chunk), name, index};
 }
 
 // The signs of all cameras, the ground and the wheels at the places of all poses.
 class PlaceSigns {
  public:
-  PlaceSigns(const ClusterData& data, int chunk)
-      : sensors_(static_cast<int>(data.problem.cameras.size()) - kWheels) {
+  PlaceSigns(const ClusterData& data, Draws draws)
+      : draws_(draws), sensors_(static_cast<int>(data.problem.cameras.size()) - kWheels) {
     for (std::size_t k = 0; k < data.state.poses.size(); ++k)
       for (int s = 0; s < sensors_; ++s)
         words_.push_back(
-            stream(data, "place", place_of(data, static_cast<int>(k), s + kWheels), chunk)());
+            stream(data, "place", place_of(data, static_cast<int>(k), s + kWheels), draws)());
   }
   [[nodiscard]] Signs of(int pose, int camera) const {
-    return signs_of(words_[at(pose * sensors_ + camera - kWheels)]);
+    return signs_of(words_[at(pose * sensors_ + camera - kWheels)], draws_);
   }
 
  private:
+  Draws draws_;
   int sensors_;
   std::vector<std::uint64_t> words_;
 };
@@ -52,10 +61,14 @@ struct Scores {
 
   Scores(std::size_t variables, Eigen::Index free)
       : poses(Panel::Zero(row_of(variables), kDraws)), scales(Panel::Zero(free, kDraws)) {}
-  void add(const MotionScore& motion, const Eigen::Matrix<double, 13, kDraws>& sum) {
-    if (motion.from >= 0) poses.middleRows<6>(row_of(at(motion.from))) += sum.topRows<6>();
-    if (motion.to >= 0) poses.middleRows<6>(row_of(at(motion.to))) += sum.middleRows<6>(6);
-    if (motion.scale >= 0) scales.row(motion.scale) += sum.row(12);
+  auto pose(int variable, Draws draws) {
+    return poses.block<6, kHalf>(row_of(at(variable)), kHalf * draws.half);
+  }
+  auto scale(int row, Draws draws) { return scales.block<1, kHalf>(row, kHalf * draws.half); }
+  void add(const MotionScore& motion, const Eigen::Matrix<double, 13, kHalf>& sum, Draws draws) {
+    if (motion.from >= 0) pose(motion.from, draws) += sum.topRows<6>();
+    if (motion.to >= 0) pose(motion.to, draws) += sum.middleRows<6>(6);
+    if (motion.scale >= 0) scale(motion.scale, draws) += sum.row(12);
   }
 };
 
@@ -65,16 +78,20 @@ struct PartScores {
       : landmarks(variables, free), places(variables, free), both(variables, free) {}
 };
 
-void draw_points(const ClusterData& data, int chunk, const PlaceSigns& places, PartScores& parts) {
+void draw_points(const ClusterData& data,
+                 Draws draws,
+                 const PlaceSigns& places,
+                 PartScores& parts) {
   Panel residuals;
   for (std::size_t p = 0; p < data.problem.points.size(); ++p) {
     const PointTerms point = point_terms(data.problem, data.layout, data.options, data.state, p);
     if (point.terms.empty()) continue;
     const int corner = data.problem.points[p].corner;
-    const Signs track = signs_of(stream(data, "landmark", corner < 0 ? p : at(corner), chunk)());
+    const Signs track =
+        signs_of(stream(data, "landmark", corner < 0 ? p : at(corner), draws)(), draws);
     const double grown = 1.0 / std::max(0.1, 1.0 - data.leverage[p]);
     Eigen::VectorXd own(2 * static_cast<Eigen::Index>(point.terms.size()));
-    residuals.resize(own.size(), kDraws);
+    residuals.resize(own.size(), kHalf);
     for (std::size_t t = 0; t < point.terms.size(); ++t) {
       const PointTerms::Term& term = point.terms[t];
       const auto row = static_cast<Eigen::Index>(2 * t);
@@ -87,71 +104,63 @@ void draw_points(const ClusterData& data, int chunk, const PlaceSigns& places, P
       const PointTerms::Term& term = point.terms[t];
       if (term.variable < 0) continue;
       const auto row = static_cast<Eigen::Index>(2 * t);
-      const Eigen::Index pose = row_of(at(term.variable));
       const Vector6d score = grown * term.J_pose.transpose() * of_landmark.middleRows<2>(row);
-      const Eigen::Matrix<double, 6, kDraws, Eigen::RowMajor> of_place =
+      const Eigen::Matrix<double, 6, kHalf, Eigen::RowMajor> of_place =
           term.J_pose.transpose().lazyProduct(of_places.middleRows<2>(row));
-      parts.landmarks.poses.middleRows<6>(pose) += score.lazyProduct(track);
-      parts.places.poses.middleRows<6>(pose) += of_place;
-      parts.both.poses.middleRows<6>(pose).array() += of_place.array().rowwise() * track.array();
+      parts.landmarks.pose(term.variable, draws) += score.lazyProduct(track);
+      parts.places.pose(term.variable, draws) += of_place;
+      parts.both.pose(term.variable, draws).array() += of_place.array().rowwise() * track.array();
     }
   }
 }
 
-void draw_motions(const ClusterData& data, int chunk, const PlaceSigns& places, PartScores& parts) {
+void draw_motions(const ClusterData& data,
+                  Draws draws,
+                  const PlaceSigns& places,
+                  PartScores& parts) {
   for (std::size_t i = 0; i < data.problem.motions.size(); ++i) {
     const MotionConstraint& motion = data.problem.motions[i];
     const MotionScore score = motion_score(data, motion);
-    Random random = stream(data, "motion", i, chunk);
-    Panel noise(6, kDraws);
-    for (int row = 0; row < 6; ++row) noise.row(row) = signs_of(random());
-    parts.landmarks.add(score, score.root.lazyProduct(noise));
-    parts.places.add(score, score.score.lazyProduct(places.of(motion.to, kWheels)));
-    parts.both.add(score, score.score.lazyProduct(signs_of(random())));
+    Random random = stream(data, "motion", i, draws);
+    Panel noise(6, kHalf);
+    for (int row = 0; row < 6; ++row) noise.row(row) = signs_of(random(), draws);
+    parts.landmarks.add(score, score.root.lazyProduct(noise), draws);
+    parts.places.add(score, score.score.lazyProduct(places.of(motion.to, kWheels)), draws);
+    parts.both.add(score, score.score.lazyProduct(signs_of(random(), draws)), draws);
   }
 }
 
-void draw_priors(const ClusterData& data, int chunk, Scores& scores) {
+void draw_priors(const ClusterData& data, Draws draws, Scores& scores) {
   const std::vector<int> rows = free_scales(data.problem);
   for (std::size_t s = 0; s < rows.size(); ++s)
     if (rows[s] >= 0)
-      scores.scales.row(rows[s]) +=
-          signs_of(stream(data, "scale", s, chunk)()) / data.problem.scales[s].prior_sigma;
+      scores.scale(rows[s], draws) +=
+          signs_of(stream(data, "scale", s, draws)(), draws) / data.problem.scales[s].prior_sigma;
   for (std::size_t i = 0; i < data.problem.priors.size(); ++i) {
     const PosePrior& prior = data.problem.priors[i];
     const int v = data.layout.variable[at(prior.pose)];
     if (v < 0) continue;
-    Random random = stream(data, "prior", i, chunk);
-    Panel noise(6, kDraws);
-    for (int row = 0; row < 6; ++row) noise.row(row) = signs_of(random());
+    Random random = stream(data, "prior", i, draws);
+    Panel noise(6, kHalf);
+    for (int row = 0; row < 6; ++row) noise.row(row) = signs_of(random(), draws);
     const MotionResidual e = motion_residual(
         Eigen::Isometry3d::Identity(), data.state.poses[at(prior.pose)], prior.T_map_vehicle, 1.0);
     const Matrix6d U = prior.information.llt().matrixU();
-    scores.poses.middleRows<6>(row_of(at(v))) +=
-        (e.J_to.transpose() * U.transpose()).lazyProduct(noise);
+    scores.pose(v, draws) += (e.J_to.transpose() * U.transpose()).lazyProduct(noise);
   }
 }
 
-// The covariance of one part.
-DrawnCovariance covariance_of(const BundleSystem& system,
-                              double share,
-                              std::vector<Scores>& draws) {
-  const auto variables = static_cast<std::size_t>(draws.front().poses.rows() / 6);
-  const Eigen::Index free = draws.front().scales.rows();
-  DrawnCovariance result{std::vector<Matrix6d>(variables, Matrix6d::Zero()),
-                         std::vector<double>(static_cast<std::size_t>(free), 0.0)};
-  for (Scores& chunk : draws) {
-    system.solve_reduced(chunk.poses, chunk.scales);
-    for (std::size_t v = 0; v < variables; ++v) {
-      const Eigen::Matrix<double, 6, kDraws> x = chunk.poses.middleRows<6>(row_of(v));
-      result.poses[v].noalias() += share * x * x.transpose();
-    }
-    for (Eigen::Index s = 0; s < free; ++s)
-      result.scale_variances[static_cast<std::size_t>(s)] +=
-          share * chunk.scales.row(s).squaredNorm();
-    chunk.poses.resize(0, 0);
+// Adds a chunk of one part to the covariance of that part. Frees the chunk: of a large map the
+// draws are large.
+void add_to(const BundleSystem& system, double share, Scores& chunk, DrawnCovariance& sum) {
+  system.solve_reduced(chunk.poses, chunk.scales);
+  for (std::size_t v = 0; v < sum.poses.size(); ++v) {
+    const Eigen::Matrix<double, 6, kDraws> x = chunk.poses.middleRows<6>(row_of(v));
+    sum.poses[v].noalias() += share * x * x.transpose();
   }
-  return result;
+  for (std::size_t s = 0; s < sum.scale_variances.size(); ++s)
+    sum.scale_variances[s] += share * chunk.scales.row(static_cast<Eigen::Index>(s)).squaredNorm();
+  chunk.poses.resize(0, 0);
 }
 
 // A plus the part of B that is positive where A is the unit (Cameron, Gelbach and Miller 2011,
@@ -211,26 +220,25 @@ DrawnCovariance drawn_covariance(const ClusterData& data, const BundleSystem& sy
   const std::size_t variables = data.layout.pose_of.size();
   const std::vector<int> rows = free_scales(data.problem);
   const Eigen::Index free = std::count_if(rows.begin(), rows.end(), [](int r) { return r >= 0; });
-  const int chunks = data.clusters.cases / kDraws;
-  std::vector<Scores> landmarks(at(chunks), Scores(0, 0));
-  std::vector<Scores> places = landmarks;
-  std::vector<Scores> both = landmarks;
-  parallel_for(at(chunks), data.options.num_threads, [&](std::size_t c) {
-    const int chunk = static_cast<int>(c);
-    const PlaceSigns signs(data, chunk);
-    PartScores parts(variables, free);
-    draw_points(data, chunk, signs, parts);
-    draw_motions(data, chunk, signs, parts);
-    draw_priors(data, chunk, parts.landmarks);
-    landmarks[c] = std::move(parts.landmarks);
-    places[c] = std::move(parts.places);
-    both[c] = std::move(parts.both);
-  });
+  DrawnCovariance result{std::vector<Matrix6d>(variables, Matrix6d::Zero()),
+                         std::vector<double>(at(static_cast<int>(free)), 0.0)};
+  DrawnCovariance of_places = result;
+  DrawnCovariance of_both = result;
   // The inverse of a covariance drawn from n cases is too large by n / (n - 7) in the mean.
   const double share = 1.0 / static_cast<double>(data.clusters.cases - 7);
-  DrawnCovariance result = covariance_of(system, share, landmarks);
-  const DrawnCovariance of_places = covariance_of(system, share, places);
-  const DrawnCovariance of_both = covariance_of(system, share, both);
+  for (int chunk = 0; chunk < data.clusters.cases / kDraws; ++chunk) {
+    PartScores parts(variables, free);
+    parallel_for(2, data.options.num_threads, [&](std::size_t half) {
+      const Draws draws{chunk, static_cast<int>(half)};
+      const PlaceSigns signs(data, draws);
+      draw_points(data, draws, signs, parts);
+      draw_motions(data, draws, signs, parts);
+      draw_priors(data, draws, parts.landmarks);
+    });
+    add_to(system, share, parts.landmarks, result);
+    add_to(system, share, parts.places, of_places);
+    add_to(system, share, parts.both, of_both);
+  }
   for (std::size_t v = 0; v < variables; ++v)
     result.poses[v] = plus_positive_part(result.poses[v], of_places.poses[v] - of_both.poses[v]);
   for (std::size_t s = 0; s < result.scale_variances.size(); ++s)

@@ -13,6 +13,7 @@
 #include "mapping/pipeline/map_inputs.hpp"
 #include "mapping/pipeline/map_paths.hpp"
 #include "mapping/pipeline/map_stages.hpp"
+#include "mapping/pipeline/odometry_checkpoint.hpp"
 #include "mapping/pipeline/scaled_relaxation.hpp"
 #include "mapping/pipeline/short_segments.hpp"
 #include "mapping/pipeline/stage_clock.hpp"
@@ -164,12 +165,20 @@ void build_from(const std::vector<Drive>& drives,
     summary.warnings.push_back({Severity::kWarning, folders.front().string(), 0, "components",
                                 std::to_string(relaxed.components) + " that no loop closure joins",
                                 "1 (drive through places that two parts share)"});
-  auto adjusted = clock.run("bundle adjustment",
-                            [&] { return adjust(input, loops, relaxed, options, progress); });
+  DescriptorMemory descriptors(build, options.descriptors_mb << 20U, input);
+  auto adjusted = clock.run("bundle adjustment", [&] {
+    AdjustTerms terms;
+    terms.need_descriptors = [&](bool needed) { descriptors.need(needed); };
+    return adjust(input, loops, relaxed, options, progress, terms);
+  });
+  for (LoopClosure& loop : loops) loop.matches = {};  // a map keeps none of them
 
-  const auto suspects = clock.run(
-      "cameras", [&] { return judge_cameras(input, drives, adjusted, gate, options, summary); });
+  const auto suspects = clock.run("cameras", [&] {
+    descriptors.need(true);
+    return judge_cameras(input, drives, adjusted, gate, options, summary);
+  });
   clock.run("covariances", [&] {
+    descriptors.need(false);
     if (options.covariances)
       add_covariances(input, relaxed, common_errors_of(suspects, input, adjusted.stage), options,
                       adjusted);
@@ -177,6 +186,7 @@ void build_from(const std::vector<Drive>& drives,
   });
 
   const auto map = clock.run("assemble", [&] {
+    descriptors.need(true);
     Map assembled = map_of_stages(input, loops, adjusted, options);
     for (std::size_t k = 0; k < assembled.keyframes.size(); ++k)
       assembled.keyframes[k].piece = relaxed.component[k];

@@ -117,6 +117,10 @@ class PassGroups {
     if (n == 0 || n % step_ != 0) return std::nullopt;
     return n / step_;
   }
+  // Whether the keyframe's pass belongs to another group than the first.
+  [[nodiscard]] bool is_late(int keyframe) const {
+    return number_[static_cast<std::size_t>(keyframe)] > step_;
+  }
   [[nodiscard]] bool holds(int group, int keyframe) const {
     return group_of(keyframe) == group || next_of(keyframe) == group;
   }
@@ -134,7 +138,8 @@ struct PassViews {
 
 std::vector<PassViews> views_by_pass(const JoinedTrack& track,
                                      const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                     int reach_keyframes) {
+                                     const PassGroups& groups,
+                                     const BundleStageOptions& options) {
   std::vector<PassViews> passes;
   const auto& views = track.views;
   for (std::size_t begin = 0, end = 0; begin < views.size(); begin = end) {
@@ -151,9 +156,10 @@ std::vector<PassViews> views_by_pass(const JoinedTrack& track,
       least = distance;
       pass.nearest = k;
     }
+    const int reach =
+        groups.is_late(pass.nearest) ? options.reach_of_many_passes : options.reach_keyframes;
     for (std::size_t i = begin; i < end; ++i)
-      if (std::abs(views[i].keyframe - pass.nearest) <= reach_keyframes)
-        pass.views.push_back(views[i]);
+      if (std::abs(views[i].keyframe - pass.nearest) <= reach) pass.views.push_back(views[i]);
     passes.push_back(std::move(pass));
   }
   return passes;
@@ -233,7 +239,7 @@ std::vector<Candidate> candidates_of(const std::vector<Eigen::Isometry3d>& T_map
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < tracks.size(); ++i)
     if (tracks[i].p_map)
-      add_candidates(i, views_by_pass(tracks[i], T_map_vehicle, options.reach_keyframes), groups,
+      add_candidates(i, views_by_pass(tracks[i], T_map_vehicle, groups, options), groups,
                      candidates);
   return candidates;
 }
@@ -351,6 +357,9 @@ BundleStage make_bundle(const MappingInput& input,
     if (quota.take(candidates[c].views)) chosen.push_back(c);
   std::sort(chosen.begin(), chosen.end());
 
+  std::size_t observations = 0;
+  for (const std::size_t c : chosen) observations += candidates[c].views.size();
+  stage.problem.observations.reserve(observations);
   for (const std::size_t c : chosen) {
     const Candidate& candidate = candidates[c];
     const int point = static_cast<int>(stage.problem.points.size());

@@ -23,6 +23,8 @@ struct BundleStageOptions {
   /// after the keyframe nearest to it. More would couple all poses with each other and cost time
   /// (docs/results/speed.md).
   int reach_keyframes = 20;
+  /// The same in passes after the first `passes_together` over a place.
+  int reach_of_many_passes = 12;
   /// Passes over one place are taken in groups of so many, in the order in which they were driven.
   /// The last pass of a group is the first one of the next. A point has key points of one group, a
   /// track may have a point in each: the cost is linear in the passes. At least 2; 0: all together.

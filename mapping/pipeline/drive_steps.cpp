@@ -22,7 +22,7 @@ VoResult odometry_of(const Drive& drive,
                      const MapOptions& options,
                      MapFileBuilder& build,
                      const Progress& progress) {
-  const std::string stage = "odometry" + std::to_string(index);
+  const std::string stage = odometry_stage(index);
   if (build.has(stage)) return load_odometry(stage, build);
   TrackDriveOptions tracking = options.tracking;
   tracking.num_threads = options.num_threads;

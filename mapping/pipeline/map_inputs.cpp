@@ -11,7 +11,7 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kPipelineVersion = "11";   // changes with everything that changes results
+constexpr const char* kPipelineVersion = "12";   // changes with everything that changes results
 constexpr const char* kInputs = "inputs";        // in map_meta
 constexpr const char* kExtension = "extension";  // the inputs of the last extension
 constexpr const char* kExtensionBuild = "place.extension";  // the key of its checkpoints

@@ -70,6 +70,8 @@ struct MapOptions {
   EqualRowOptions row_options;
   std::string
       rows_digest;  ///< digest of the labels that `equal_rows` reads; part of the inputs key
+  /// Descriptors of so much in all leave the memory where nothing reads them.
+  std::size_t descriptors_mb = 128;
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< 0: all cores
 

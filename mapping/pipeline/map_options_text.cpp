@@ -17,6 +17,7 @@ std::string options_text(const MapOptions& o) {
        << " use_wheels=" << o.tracking.use_wheels << " max_gap_s=" << o.tracking.max_gap_s
        << " min_inliers=" << o.loops.min_inliers << " per_image=" << o.bundle.per_image
        << " reach_keyframes=" << o.bundle.reach_keyframes
+       << " reach_of_many_passes=" << o.bundle.reach_of_many_passes
        << " wheel_scale_sigma=" << o.bundle.wheel_scale_sigma
        << " ground_sigma_m=" << o.bundle.ground_sigma_m << " min_views=" << o.min_views
        << " covariances=" << o.covariances;

@@ -38,6 +38,27 @@ std::vector<TrackMatch> joined_by_loops(const VoResult& odometry,
   return same;
 }
 
+// Tracks of one landmark: found again at the poses, in loops, and given.
+std::vector<TrackMatch> same_tracks(const MappingInput& input,
+                                    const std::vector<LoopClosure>& loops,
+                                    const Relaxed& relaxed,
+                                    const MapOptions& options,
+                                    const AdjustTerms& terms,
+                                    const std::vector<Eigen::Isometry3d>& T_map_vehicle) {
+  auto same = match_revisits(input, T_map_vehicle, relaxed.component, options.revisits);
+  if (terms.may_join)
+    std::erase_if(same, [&](const TrackMatch& match) {
+      const auto& track = input.odometry.tracks[static_cast<std::size_t>(match.track)];
+      return std::any_of(track.observations.begin(), track.observations.end(), [&](const auto& o) {
+        return !terms.may_join(o.keyframe, match.view.keyframe);
+      });
+    });
+  const auto from_loops = joined_by_loops(input.odometry, loops);
+  same.insert(same.end(), from_loops.begin(), from_loops.end());
+  same.insert(same.end(), terms.same.begin(), terms.same.end());
+  return same;
+}
+
 void rechain(VoResult& odometry,
              std::size_t begin,
              std::size_t end,
@@ -206,23 +227,19 @@ Adjusted adjust(const MappingInput& input,
   adjusted.T_map_vehicle = relaxed.T_map_vehicle;
   BundleStageOptions stage_options = options.bundle;
   stage_options.bundle.num_threads = options.num_threads;
-  const auto from_loops = joined_by_loops(input.odometry, loops);
+  const auto need_descriptors = [&](bool needed) {
+    if (terms.need_descriptors) terms.need_descriptors(needed);
+  };
   // Two rounds: with the poses of the first, more tracks are found again in other passes.
   for (int round = 0; round < 2; ++round) {
-    auto same = match_revisits(input, adjusted.T_map_vehicle, relaxed.component, options.revisits);
-    if (terms.may_join)
-      std::erase_if(same, [&](const TrackMatch& match) {
-        const auto& track = input.odometry.tracks[static_cast<std::size_t>(match.track)];
-        return std::any_of(
-            track.observations.begin(), track.observations.end(),
-            [&](const auto& o) { return !terms.may_join(o.keyframe, match.view.keyframe); });
-      });
-    same.insert(same.end(), from_loops.begin(), from_loops.end());
-    same.insert(same.end(), terms.same.begin(), terms.same.end());
-    adjusted.tracks = join_tracks(input.odometry, same);
+    need_descriptors(true);
+    adjusted.stage = {};
+    adjusted.tracks = join_tracks(
+        input.odometry, same_tracks(input, loops, relaxed, options, terms, adjusted.T_map_vehicle));
     triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
     if (round > 0) split_wrong_joins_of(input, options, adjusted);
     adjusted.stage = make_bundle(input, adjusted.T_map_vehicle, adjusted.tracks, stage_options);
+    need_descriptors(false);
     auto& problem = adjusted.stage.problem;
     problem.priors = terms.priors;
     problem.motions.insert(problem.motions.end(), terms.motions.begin(), terms.motions.end());

@@ -61,6 +61,9 @@ struct AdjustTerms {
   std::vector<MotionConstraint> motions;
   /// Whether the images of two keyframes may show the same place; not set: all may.
   std::function<bool(int, int)> may_join;
+  /// Called where the descriptors of `input` are needed or not: true before tracks are matched,
+  /// false before a solution, which then has their memory. Not set: they stay.
+  std::function<void(bool)> need_descriptors;
 };
 
 /// Finds landmarks again in other passes, joins and triangulates tracks, and adjusts poses and

@@ -118,6 +118,31 @@ TEST(PassGroups, CoupleFourPassesAtMostAndLeaveNoneOut) {
   EXPECT_TRUE(std::is_sorted(stage.track_of_point.begin(), stage.track_of_point.end()));
 }
 
+// The first group keeps the long reach, which a place with few passes needs.
+TEST(PassGroups, AfterTheFirstGroupPointsHaveViewsOfFewerKeyframes) {
+  ManyLaps laps = drive_many_laps();
+  const auto is_seen = [](int keyframe) {
+    return keyframe % kLapSteps >= 10 && keyframe % kLapSteps < 28;
+  };
+  for (JoinedTrack& track : laps.tracks)
+    std::erase_if(track.views, [&](const KeyPointId& v) { return !is_seen(v.keyframe); });
+  BundleStageOptions options;
+  options.reach_of_many_passes = 3;
+  const BundleStage stage = make_bundle(laps.input, laps.poses, laps.tracks, options);
+  std::map<std::pair<int, int>, std::pair<int, int>> seen;  // of (point, lap): first, last keyframe
+  for (const BundleObservation& o : stage.problem.observations) {
+    auto& [first, last] =
+        seen.try_emplace({o.point, lap_of(o.pose)}, std::pair(o.pose, o.pose)).first->second;
+    first = std::min(first, o.pose);
+    last = std::max(last, o.pose);
+  }
+  std::map<int, int> longest;  // of each lap
+  for (const auto& [key, ends] : seen)
+    longest[key.second] = std::max(longest[key.second], ends.second - ends.first);
+  for (const int lap : {0, 1, 2}) EXPECT_GT(longest[lap], 12) << lap;
+  for (int lap = 4; lap < kLapCount; ++lap) EXPECT_LE(longest[lap], 6) << lap;
+}
+
 // The fourth lap is dark and finds no corner again: the fifth takes its place in the groups.
 TEST(PassGroups, TieLapsAcrossOneThatSawNothing) {
   ManyLaps laps = drive_many_laps();
