@@ -55,6 +55,7 @@ Eigen::MatrixXd compressed(const ViewSystem& system, const ViewSides& sides, con
   ViewPanel values;
   for (std::size_t k = s.begin; k < s.end; ++k) {
     system.rows(k, sides, values);
+    if (values.rows() == 0) continue;  // Eigen would divide by the number of rows
     G.selfadjointView<Eigen::Lower>().rankUpdate(values.transpose());
   }
   return root_of(Eigen::MatrixXd(G.selfadjointView<Eigen::Lower>()));
