@@ -147,7 +147,7 @@ MapMotion::Question add_views(ViewData data,
   if (!motion.has_reference() && left.streams.gyro.empty()) ask_for_third_clock(parts.back());
   // Effects that the cameras exclude must not return as effects of the reference.
   for (const std::string& name : contradicted)
-    if (name.starts_with("cam")) left.options.library.without.push_back(name);
+    if (is_camera_effect(name)) left.options.library.without.push_back(name);
   return left;
 }
 

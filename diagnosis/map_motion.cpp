@@ -35,7 +35,7 @@ MapMotion::Question MapMotion::question(const ViewProblem* views,
   // Effects of the cameras are no errors of a reference; they are removed from the poses of the
   // observations.
   if (views != nullptr)
-    std::erase_if(known, [](const auto& effect) { return effect.first.starts_with("cam"); });
+    std::erase_if(known, [](const auto& effect) { return is_camera_effect(effect.first); });
   // Of several drives the map itself is judged by that name; poses of this one alone have its
   // scale.
   if (!one_session_ || of_map) {
@@ -54,7 +54,7 @@ std::optional<double> MapMotion::wants(const ViewProblem& views,
   q.options.library.grammar = q.options.library.places = false;
   if (has_reference())
     for (const auto& [name, size] : found)
-      if (!name.starts_with("cam") && !name.starts_with("map.")) q.options.known[name] += size;
+      if (!is_camera_effect(name) && !name.starts_with("map.")) q.options.known[name] += size;
   try {
     const PreparedMotion prepared = prepare_motion(q.streams, drive_.folder().string(), q.options);
     double evidence = 0.0;

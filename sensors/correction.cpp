@@ -14,8 +14,9 @@ namespace {
 
 constexpr double kWindowS = 0.4;
 
-constexpr std::array kRigEffects{"focal", "centre", "distortion", "rotation",
-                                 "pitch", "roll",   "position"};
+constexpr std::array kRigEffects{"focal",      "aspect",      "centre",   "centre_x", "centre_y",
+                                 "distortion", "distortion2", "rotation", "pitch",    "roll",
+                                 "position",   "lateral",     "height"};
 constexpr std::array kNoise{"outliers", "variance(speed)", "variance(turn)", "correlation"};
 constexpr std::array kStreamEffects{
     "wheels0.left_radius",       "wheels0.right_radius", "wheels0.radius",
@@ -148,9 +149,10 @@ std::vector<std::string> not_corrected(const EffectSizes& sizes) {
     const std::string& name = entry.first;
     const double size = entry.second;
     const auto dot = name.find('.');
-    const bool rig = name.starts_with("cam") &&
-                     std::any_of(kRigEffects.begin(), kRigEffects.end(),
-                                 [&](const char* e) { return name.substr(dot + 1) == e; });
+    const bool rig = name.starts_with("rig.") ||
+                     (name.starts_with("cam") &&
+                      std::any_of(kRigEffects.begin(), kRigEffects.end(),
+                                  [&](const char* e) { return name.substr(dot + 1) == e; }));
     const bool stream = std::any_of(kStreamEffects.begin(), kStreamEffects.end(),
                                     [&](const char* e) { return name == e; });
     // Of noise there is nothing to correct.

@@ -54,6 +54,13 @@ constexpr std::array kCameraEffects{
                "shift of the principal point, to the right and down by size each"},
     EffectInfo{"cam.distortion", "1", 0.01, -1.0, 1.0, "image radius",
                "added to the first distortion coefficient (double sphere: alpha)"},
+    EffectInfo{"cam.aspect", "1", 0.005, -0.5, 0.5, "image radius",
+               "horizontal over vertical focal length, relative; their mean stays"},
+    EffectInfo{"cam.centre_x", "px", 3.0, -500.0, 500.0, "",
+               "shift of the principal point to the right"},
+    EffectInfo{"cam.centre_y", "px", 3.0, -500.0, 500.0, "", "shift of the principal point down"},
+    EffectInfo{"cam.distortion2", "1", 0.005, -1.0, 1.0, "image radius",
+               "added to the second distortion coefficient (double sphere: xi)"},
     EffectInfo{"cam.rotation", "rad", 0.02, -1.6, 1.6, "",
                "turn about the camera's y axis, positive to its right"},
     EffectInfo{"cam.pitch", "rad", 0.02, -1.6, 1.6, "",
@@ -62,6 +69,18 @@ constexpr std::array kCameraEffects{
                "turn about the camera's z axis, positive clockwise seen from behind"},
     EffectInfo{"cam.position", "m", 0.05, -5.0, 5.0, "turn rate",
                "shift along the vehicle's x axis, positive forward"},
+    EffectInfo{"cam.lateral", "m", 0.05, -5.0, 5.0, "turn rate",
+               "shift along the vehicle's y axis, positive to the left"},
+    EffectInfo{"cam.height", "m", 0.06, -2.0, 2.0, "",
+               "shift along the vehicle's z axis, positive upwards"},
+    EffectInfo{"rig.rotation", "rad", 0.02, -1.6, 1.6, "distance",
+               "turn of all cameras as one body about the vehicle's z axis, positive to the right"},
+    EffectInfo{"rig.pitch", "rad", 0.03, -0.5, 0.5, "distance",
+               "turn of all cameras as one body about the vehicle's y axis, positive upwards"},
+    EffectInfo{
+        "rig.roll", "rad", 0.03, -0.5, 0.5, "turn rate",
+        "turn of all cameras as one body about the vehicle's x axis, positive clockwise seen "
+        "from behind"},
     EffectInfo{"cam.vignetting", "1", 0.5, -1.0, 1.0, "image radius",
                "light lost at the edge of the image circle, relative"},
     EffectInfo{"cam.exposure", "1", 0.3, -0.95, 9.0, "", "light that reaches the sensor, relative"},
@@ -165,6 +184,11 @@ double effect_size(const EffectSizes& sizes, std::string_view sensor, std::strin
   const std::string_view kind = kind_of(sensor);
   const auto whole = kind == sensor ? sizes.end() : find(kind);
   return (own != sizes.end() ? own->second : 0.0) + (whole != sizes.end() ? whole->second : 0.0);
+}
+
+bool is_camera_effect(std::string_view name) {
+  const std::string_view sensor = name.substr(0, name.find('.'));
+  return sensor == "rig" || kind_of(sensor) == "cam";
 }
 
 void check_effects(const EffectSizes& sizes) {

@@ -51,6 +51,9 @@ using EffectSizes = std::map<std::string, double>;
                                  std::string_view sensor,
                                  std::string_view effect);
 
+/// Whether an effect changes cameras: "cam.focal", "cam2.latency", "rig.pitch".
+[[nodiscard]] bool is_camera_effect(std::string_view name);
+
 /// Checks names and sizes. Throws BadInput, with the nearest known effect for an unknown name, and
 /// with the bounds for a size outside them. Sizes of one camera and of the whole rig are added
 /// first.

@@ -27,8 +27,8 @@ std::string somebody_to_detect(const Scenario& scenario) {
 }
 
 bool is_of_camera(const std::string& sensor) {
-  return sensor == "cam" || sensor == "cam0" || sensor == "cam1" || sensor == "cam2" ||
-         sensor == "cam3";
+  return sensor == "rig" || sensor == "cam" || sensor == "cam0" || sensor == "cam1" ||
+         sensor == "cam2" || sensor == "cam3";
 }
 
 // Whether nothing that is recorded shows the effect, for want of images.

@@ -34,9 +34,11 @@ double CornerErrors::hide(const ViewCause& cause, const ViewBasis& basis) const 
   const std::size_t column = cause.columns.front();
   if (column >= basis.wheels()) return 0.0;
   if (cause.columns.size() == 1) return hide(column / basis.per_camera());
-  // The wheels determine position and latency of the rig as a whole.
-  const bool by_wheels = cause.name == "cam.position" || cause.name == "cam.latency";
-  return by_wheels ? 0.0 : hide_of_rig();
+  // Wheels and ground determine where the rig as a whole is, how it is turned, and its latency.
+  const bool as_one_body = cause.name == "cam.position" || cause.name == "cam.lateral" ||
+                           cause.name == "cam.height" || cause.name == "cam.latency" ||
+                           cause.name.starts_with("rig.");
+  return as_one_body ? 0.0 : hide_of_rig();
 }
 
 }  // namespace roadbook

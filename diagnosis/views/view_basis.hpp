@@ -18,11 +18,24 @@ namespace roadbook {
 // in that of the ground. An effect of the whole rig is the sum of the columns of its cameras. Order
 // of the columns:
 //
-//   cam0: effects, radial terms, tangential terms | cam1: ... | wheels, variations | hinges |
-//   ground
+//   cam0: effects, turns of the rig, radial terms, tangential terms | cam1: ... | wheels,
+//   variations | hinges | ground
 
-inline constexpr std::array<std::string_view, 7> kCameraColumns{
-    "focal", "centre", "distortion", "rotation", "position", "latency", "rolling_shutter"};
+/// The first two change when a camera sees, the others change the camera.
+inline constexpr std::array<std::string_view, 15> kCameraColumns{
+    "latency",  "rolling_shutter", "focal",       "aspect",   "centre", "centre_x",
+    "centre_y", "distortion",      "distortion2", "rotation", "pitch",  "roll",
+    "position", "lateral",         "height"};
+inline constexpr std::size_t kLatencyColumn = 0;
+inline constexpr std::size_t kShutterColumn = 1;
+inline constexpr std::size_t kHeightColumn = 14;
+static_assert(kCameraColumns[kHeightColumn] == "height");
+/// Turns of the rig as one body. Each is an effect of all cameras together only.
+inline constexpr std::array<std::string_view, 3> kRigColumns{"rotation", "pitch", "roll"};
+/// The columns that change a camera follow each other: its own effects, then turns of the rig.
+inline constexpr std::size_t kFirstGeometryColumn = 2;
+inline constexpr std::size_t kFirstTermColumn = kCameraColumns.size() + kRigColumns.size();
+inline constexpr std::size_t kGeometryColumns = kFirstTermColumn - kFirstGeometryColumn;
 inline constexpr std::array<std::string_view, 9> kWheelColumns{
     "radius",  "left_radius",       "right_radius", "radius_difference", "track_width",
     "latency", "slip_acceleration", "radius_speed", "eccentricity"};
@@ -70,12 +83,10 @@ struct ViewBasis {
   std::size_t cameras = 0;
   std::size_t hinges = 0;  ///< number of hinges; their lines are in ViewPoint::hinges
 
-  [[nodiscard]] std::size_t per_camera() const {
-    return kCameraColumns.size() + 2 * kViewTermCount;
-  }
+  [[nodiscard]] std::size_t per_camera() const { return kFirstTermColumn + 2 * kViewTermCount; }
   [[nodiscard]] std::size_t camera(std::size_t c) const { return c * per_camera(); }
   [[nodiscard]] std::size_t term(std::size_t c, std::size_t hook, std::size_t t) const {
-    return camera(c) + kCameraColumns.size() + hook * kViewTermCount + t;
+    return camera(c) + kFirstTermColumn + hook * kViewTermCount + t;
   }
   [[nodiscard]] std::size_t wheels() const { return camera(cameras); }
   [[nodiscard]] std::size_t variations() const { return wheels() + kWheelColumns.size(); }

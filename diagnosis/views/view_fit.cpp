@@ -20,15 +20,15 @@ constexpr double kFirstGate =
 
 // A linearly independent subset of the effects; sums of others would be determined by their priors
 // alone. Of the latencies, that of the first camera is left out and that of the wheels stays: poses
-// then remain those of the image stamps, and hinges found at them fit the nominal ones.
+// then remain those of the image stamps, and hinges found at them fit the nominal ones. The
+// ground's height stays instead of the first camera's, and both components of an image centre.
 std::vector<ViewCause> independent(std::vector<ViewCause> causes, const ViewBasis& basis) {
-  constexpr std::size_t kLatencyColumn = 5;
-  static_assert(kCameraColumns[kLatencyColumn] == "latency");
   const bool wheels = std::any_of(causes.begin(), causes.end(),
                                   [](const ViewCause& c) { return c.name == "wheels0.latency"; });
   std::erase_if(causes, [&](const ViewCause& c) {
     return (basis.cameras > 1 && c.columns.size() > 1) || c.name == "wheels0.radius" ||
-           c.name == "wheels0.radius_difference" ||
+           c.name == "wheels0.radius_difference" || c.name.ends_with(".centre") ||
+           (basis.cameras > 1 && c.columns.front() == basis.camera(0) + kHeightColumn) ||
            (wheels && c.columns.front() == basis.camera(0) + kLatencyColumn);
   });
   return causes;
@@ -177,6 +177,13 @@ std::vector<ViewCause> view_causes(const ViewData& data, const ViewBasis& basis)
     std::vector<std::size_t> columns;
     for (std::size_t c = 0; c < basis.cameras; ++c) columns.push_back(basis.camera(c) + k);
     const std::string name = "cam." + std::string(kCameraColumns[k]);
+    add(name, name, columns);
+  }
+  for (std::size_t k = 0; k < kRigColumns.size() && basis.cameras > 1; ++k) {
+    std::vector<std::size_t> columns;
+    for (std::size_t c = 0; c < basis.cameras; ++c)
+      columns.push_back(basis.camera(c) + kCameraColumns.size() + k);
+    const std::string name = "rig." + std::string(kRigColumns[k]);
     add(name, name, columns);
   }
   for (std::size_t k = 0; k < kWheelColumns.size() && data.has_wheels; ++k) {

@@ -20,8 +20,8 @@ struct ViewCause {
   double tau = 1.0;
   std::vector<std::size_t> columns;  ///< elementary columns; all share one size
 };
-/// All effects for which the data have rows: "camN.X" of every camera, then "cam.X", wheels and
-/// ground.
+/// All effects for which the data have rows: "camN.X" of every camera, then "cam.X", "rig.X",
+/// wheels and ground.
 [[nodiscard]] std::vector<ViewCause> view_causes(const ViewData& data, const ViewBasis& basis);
 
 struct ViewFit {

@@ -54,7 +54,11 @@ SteppedCameras::SteppedCameras(std::vector<MountedCamera> real) : now(std::move(
     more.emplace_back();
     less.emplace_back();
     for (std::size_t k = 0; k < kSteps.size(); ++k) {
-      const std::string effect = camera.name + "." + std::string(kCameraColumns[k]);
+      const std::size_t column = kFirstGeometryColumn + k;
+      const std::string effect =
+          column < kCameraColumns.size()
+              ? camera.name + "." + std::string(kCameraColumns[column])
+              : "rig." + std::string(kRigColumns[column - kCameraColumns.size()]);
       more.back()[k] = apply_camera_effects(camera, {{effect, kSteps[k]}});
       less.back()[k] = apply_camera_effects(camera, {{effect, -kSteps[k]}});
     }
@@ -158,9 +162,10 @@ void ViewPrediction::view_columns(const ViewPoint& point,
   const MountedCamera& now = cameras.now[at(o.camera)];
   const Eigen::Isometry3d& T = point.state.poses[at(o.pose)];
   const Eigen::Vector3d p_vehicle = T.inverse() * point.state.points[at(o.point)];
-  // The first effects change the camera model: central differences of its projection.
+  // Effects that change the camera: central differences of its projection.
   for (std::size_t k = 0; k < SteppedCameras::kSteps.size(); ++k) {
-    if (!needed.empty() && needed[k] == 0) continue;
+    const std::size_t column = kFirstGeometryColumn + k;
+    if (!needed.empty() && needed[column] == 0) continue;
     const auto seen = [&](const MountedCamera& other) {
       return other.camera.project(other.T_vehicle_camera.inverse() * p_vehicle);
     };
@@ -170,17 +175,17 @@ void ViewPrediction::view_columns(const ViewPoint& point,
     // At the edge of the image one side of the difference may be outside the field of view.
     const Eigen::Vector2d here = o.pixel + term.r;
     if (more && less)
-      strip.col(index(k)) = (*more - *less) / (2.0 * step);
+      strip.col(index(column)) = (*more - *less) / (2.0 * step);
     else if (more || less)
-      strip.col(index(k)) = more ? (*more - here) / step : (here - *less) / step;
+      strip.col(index(column)) = more ? (*more - here) / step : (here - *less) / step;
   }
   const double dt = timing.after_stamp(now.camera, o.camera, o.pixel.y());
   // The derivative of the displacement over [0, dt] is the twist at dt, which is the mean twist
   // over [0, 2 dt].
   const Eigen::Vector2d per_second = term.J_pose * timing.twist(o.pose, 2.0 * dt);
-  strip.col(5) = -per_second;
-  strip.col(6) = ViewTiming::row_share(now.camera, o.pixel.y()) * per_second;
-  if (!needed.empty() && std::all_of(needed.begin() + kCameraColumns.size(), needed.end(),
+  strip.col(index(kLatencyColumn)) = -per_second;
+  strip.col(index(kShutterColumn)) = ViewTiming::row_share(now.camera, o.pixel.y()) * per_second;
+  if (!needed.empty() && std::all_of(needed.begin() + kFirstTermColumn, needed.end(),
                                      [](std::uint8_t n) { return n == 0; }))
     return;
   const Eigen::Vector2d predicted = o.pixel + term.r;
@@ -188,8 +193,8 @@ void ViewPrediction::view_columns(const ViewPoint& point,
                                  T.translation().head<2>());
   const Eigen::Vector2d ahead = radial_direction(now.camera, predicted);
   for (std::size_t t = 0; t < kViewTermCount; ++t) {
-    strip.col(index(kCameraColumns.size() + t)) = values[t] * ahead;
-    strip.col(index(kCameraColumns.size() + kViewTermCount + t)) =
+    strip.col(index(kFirstTermColumn + t)) = values[t] * ahead;
+    strip.col(index(kFirstTermColumn + kViewTermCount + t)) =
         values[t] * Eigen::Vector2d(-ahead.y(), ahead.x());
   }
 }

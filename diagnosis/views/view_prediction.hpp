@@ -43,11 +43,14 @@ struct ViewNoise {
 /// Cameras at the current effects, and one small step of each camera-changing effect to either
 /// side, for central differences.
 struct SteppedCameras {
-  static constexpr std::array<double, 5> kSteps{1e-4, 0.05, 1e-4, 1e-4, 1e-3};
+  /// In the order and the units of the columns from kFirstGeometryColumn on.
+  static constexpr std::array<double, kGeometryColumns> kSteps{1e-4, 1e-4, 0.05, 0.05, 0.05, 1e-4,
+                                                               1e-4, 1e-4, 1e-4, 1e-4, 1e-3, 1e-3,
+                                                               1e-3, 1e-4, 1e-4, 1e-4};
   explicit SteppedCameras(std::vector<MountedCamera> real);
   std::vector<MountedCamera> now;
-  std::vector<std::array<MountedCamera, 5>> more;
-  std::vector<std::array<MountedCamera, 5>> less;
+  std::vector<std::array<MountedCamera, kGeometryColumns>> more;
+  std::vector<std::array<MountedCamera, kGeometryColumns>> less;
 };
 /// Wheels at the current effects, and one small step of each effect to either side.
 struct SteppedWheels {

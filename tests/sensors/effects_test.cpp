@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -113,6 +114,77 @@ TEST(Effects, ACameraTurnedToItsRightSeesItsAxisOnTheRight) {
   EXPECT_NEAR((real.T_vehicle_camera.linear() * Eigen::Vector3d::UnitZ()).x(), std::sin(0.1),
               1e-15);
   EXPECT_EQ(real.T_vehicle_camera.translation().x(), 0.2);
+}
+
+TEST(Effects, AMountingEffectMovesACameraAlongOneAxisOfTheVehicle) {
+  MountedCamera nominal;
+  nominal.name = "cam1";
+  nominal.T_vehicle_camera.translation() = Eigen::Vector3d(1.0, 2.0, 3.0);
+  const auto real = apply_camera_effects(
+      nominal, {{"cam1.lateral", 0.1}, {"cam.height", 0.2}, {"cam2.height", 5.0}});
+  EXPECT_EQ(real.T_vehicle_camera.translation(), Eigen::Vector3d(1.0, 2.1, 3.2));
+}
+
+// By hand: the left end of an axle, seen from above, goes ahead if the body turns to its right, and
+// up if it leans to its right; the front goes up with its pitch.
+TEST(Effects, ATurnOfTheRigTurnsPlacesAndDirectionsOfAllCamerasAsOneBody) {
+  const auto turned = [](const char* effect, const Eigen::Vector3d& place) {
+    MountedCamera nominal;
+    nominal.name = "cam3";
+    nominal.T_vehicle_camera.translation() = place;
+    return apply_camera_effects(nominal, {{effect, 0.1}});
+  };
+  const Eigen::Vector3d ahead(1.0, 0.0, 0.0);
+  const Eigen::Vector3d left(0.0, 1.0, 0.0);
+  const double c = std::cos(0.1);
+  const double s = std::sin(0.1);
+  const auto right = turned("rig.rotation", ahead);
+  EXPECT_NEAR((right.T_vehicle_camera.translation() - Eigen::Vector3d(c, -s, 0.0)).norm(), 0.0,
+              1e-15);
+  EXPECT_NEAR((right.T_vehicle_camera.linear() * left - Eigen::Vector3d(s, c, 0.0)).norm(), 0.0,
+              1e-15);
+  const auto up = turned("rig.pitch", ahead);
+  EXPECT_NEAR((up.T_vehicle_camera.translation() - Eigen::Vector3d(c, 0.0, s)).norm(), 0.0, 1e-15);
+  const auto leaning = turned("rig.roll", left);
+  EXPECT_NEAR((leaning.T_vehicle_camera.translation() - Eigen::Vector3d(0.0, c, s)).norm(), 0.0,
+              1e-15);
+}
+
+TEST(Effects, EachPartOfALensHasItsOwnEffectInEveryModel) {
+  struct Model {
+    CameraModel model;
+    std::size_t focal, distortion, distortion2;
+  };
+  for (const Model& m : {Model{CameraModel::kPinholeRadtan, 0, 4, 5},
+                         {CameraModel::kKannalaBrandt, 0, 4, 5},
+                         {CameraModel::kOmni, 1, 5, 6},
+                         {CameraModel::kDoubleSphere, 2, 1, 0}}) {
+    MountedCamera nominal;
+    nominal.name = "cam0";
+    nominal.camera.model = m.model;
+    nominal.camera.parameters = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+    const auto change = [&](const std::string& effect) {
+      auto q = apply_camera_effects(nominal, {{"cam0." + effect, 0.02}}).camera.parameters;
+      for (std::size_t i = 0; i < q.size(); ++i) q[i] -= nominal.camera.parameters[i];
+      return q;
+    };
+    const double fx = nominal.camera.parameters[m.focal];
+    const double fy = nominal.camera.parameters[m.focal + 1];
+    const std::map<std::string, std::map<std::size_t, double>> want{
+        {"aspect", {{m.focal, 0.01 * fx}, {m.focal + 1, -0.01 * fy}}},
+        {"focal", {{m.focal, 0.02 * fx}, {m.focal + 1, 0.02 * fy}}},
+        {"centre_x", {{m.focal + 2, 0.02}}},
+        {"centre_y", {{m.focal + 3, 0.02}}},
+        {"centre", {{m.focal + 2, 0.02}, {m.focal + 3, 0.02}}},
+        {"distortion", {{m.distortion, 0.02}}},
+        {"distortion2", {{m.distortion2, 0.02}}}};
+    for (const auto& [effect, parameters] : want) {
+      const auto got = change(effect);
+      for (std::size_t i = 0; i < got.size(); ++i)
+        EXPECT_NEAR(got[i], parameters.contains(i) ? parameters.at(i) : 0.0, 1e-15)
+            << effect << " of " << camera_model_name(m.model) << ", parameter " << i;
+    }
+  }
 }
 
 }  // namespace

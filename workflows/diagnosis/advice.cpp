@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/format.hpp"
+#include "workflows/diagnosis/camera_advice.hpp"
 #include "workflows/diagnosis/effect_words.hpp"
 
 namespace roadbook {
@@ -25,6 +26,7 @@ std::string sensor_of(const std::string& effect) { return effect.substr(0, effec
 // "cam2": "camera cam2"; "cam": "every camera".
 std::string sensor_words(const std::string& sensor) {
   static const std::map<std::string, std::string> kNames{{"cam", "every camera"},
+                                                         {"rig", "the rig of cameras"},
                                                          {"wheels0", "the wheels"},
                                                          {"steering0", "the steering angle"},
                                                          {"imu0", "the gyro"},
@@ -181,6 +183,10 @@ std::vector<Advice> advice_of(const Diagnosis& d, const std::optional<StatedVehi
                                               {"factor", fixed(1.0 + c.size, digits + 2)},
                                               {"-size", fixed(-factor * c.size, digits)}};
     add_keys(of_log, values);
+    values["calibrate"] =
+        new_camera_values(d, c.effect, stated ? stated->rig : Rig{})
+            .value_or("correct it with `--write-model` and `roadbook map --model`, or calibrate " +
+                      values["sensor"] + " again");
     if (stated)
       add_vehicle(c.session.empty() ? corrected_by(d, stated->wheels)
                                     : corrected(stated->wheels, c.effect, c.size),

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnosis/inference/diagnosis_result.hpp"
+#include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
 
 namespace roadbook {
@@ -19,6 +20,7 @@ namespace roadbook {
 struct StatedVehicle {
   WheelModel wheels;
   bool of_log = false;  ///< stated in the description of a plain log, whose keys have other names
+  Rig rig{};            ///< empty: new values of cameras are not said
 };
 
 struct Advice {

@@ -10,8 +10,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kToDegrees = 180.0 / std::numbers::pi;
-constexpr std::string_view kCalibrate =
-    "correct it with `--write-model` and `roadbook map --model`, or calibrate {sensor} again";
+constexpr std::string_view kCalibrate = "{calibrate}";
 constexpr std::string_view kOffset = "add {-size} ms to {offset_key} {sensor}";
 
 constexpr std::array kWords{
@@ -88,6 +87,23 @@ constexpr std::array kWords{
                 "the distortion of {sensor} is larger than stated",
                 "the distortion of {sensor} is smaller than stated", "in the first coefficient",
                 1.0, kCalibrate},
+    EffectWords{"cam.aspect", "horizontal over vertical focal length",
+                "the horizontal focal length of {sensor} is longer against the vertical one than "
+                "stated",
+                "the horizontal focal length of {sensor} is shorter against the vertical one than "
+                "stated",
+                "%", 100.0, kCalibrate},
+    EffectWords{"cam.centre_x", "horizontal image centre",
+                "the image centre of {sensor} lies farther to the right than stated",
+                "the image centre of {sensor} lies farther to the left than stated", "px", 1.0,
+                kCalibrate},
+    EffectWords{"cam.centre_y", "vertical image centre",
+                "the image centre of {sensor} lies lower than stated",
+                "the image centre of {sensor} lies higher than stated", "px", 1.0, kCalibrate},
+    EffectWords{"cam.distortion2", "lens distortion far from the image centre",
+                "the distortion of {sensor} grows more towards the edge than stated",
+                "the distortion of {sensor} grows less towards the edge than stated",
+                "in the second coefficient", 1.0, kCalibrate},
     EffectWords{"cam.rotation", "direction of the cameras",
                 "{sensor} looks farther to its right than stated",
                 "{sensor} looks farther to its left than stated", "deg", kToDegrees, kCalibrate},
@@ -100,6 +116,21 @@ constexpr std::array kWords{
     EffectWords{"cam.position", "position of the cameras",
                 "{sensor} is mounted farther forward than stated",
                 "{sensor} is mounted farther back than stated", "cm", 100.0, kCalibrate},
+    EffectWords{"cam.lateral", "lateral position of the cameras",
+                "{sensor} is mounted farther to the left than stated",
+                "{sensor} is mounted farther to the right than stated", "cm", 100.0, kCalibrate},
+    EffectWords{"cam.height", "mounting height of the cameras",
+                "{sensor} is mounted higher than stated", "{sensor} is mounted lower than stated",
+                "cm", 100.0, kCalibrate},
+    EffectWords{"rig.rotation", "direction of the rig of cameras",
+                "{sensor} looks farther to the right than stated",
+                "{sensor} looks farther to the left than stated", "deg", kToDegrees, kCalibrate},
+    EffectWords{"rig.pitch", "pitch of the rig of cameras", "{sensor} looks farther up than stated",
+                "{sensor} looks farther down than stated", "deg", kToDegrees, kCalibrate},
+    EffectWords{"rig.roll", "roll of the rig of cameras",
+                "{sensor} is turned clockwise seen from behind, unlike stated",
+                "{sensor} is turned counter-clockwise seen from behind, unlike stated", "deg",
+                kToDegrees, kCalibrate},
     EffectWords{"cam.vignetting", "light at the edge of the images",
                 "{sensor} loses light towards the edge of its image",
                 "{sensor} gains light towards the edge of its image", "%", 100.0,

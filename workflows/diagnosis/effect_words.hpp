@@ -15,7 +15,8 @@ struct EffectWords {
   double factor = 1.0;      ///< from the effect's own unit to the shown one
   /// What to do. {size} and {-size} are the shown size, {factor} is 1 + the size,
   /// {left}, {right}, {track} and {wheelbase} are new values of the vehicle, {left_key} ... the
-  /// names of their keys. A sentence whose value is not stated is left out.
+  /// names of their keys, {calibrate} says new values of a camera. A sentence whose value is not
+  /// stated is left out.
   std::string_view act;
   bool of_place = false;  ///< a feature of the place, not a fault of a sensor
 };

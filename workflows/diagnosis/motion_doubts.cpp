@@ -93,7 +93,7 @@ std::vector<Problem> motion_doubts(const Map& map, const Drive& drive, const Eff
   options.library.without = {"map.scale", "map.bend"};
   options.known = model;
   std::erase_if(options.known, [](const auto& effect) {
-    const bool of_images = effect.first.starts_with("cam") && effect.first != "cam.latency";
+    const bool of_images = is_camera_effect(effect.first) && effect.first != "cam.latency";
     return of_images || effect.first.starts_with("map.");
   });
   Diagnosis d;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "apps/report/diagnosis_page.hpp"
 #include "workflows/diagnosis/effect_words.hpp"
 
@@ -55,6 +58,42 @@ TEST(Advice, SaysTheNewValueInTheKeysOfItsFile) {
   const Advice place = advice_for(cause("cam.position", 0.3, 0.01), log);
   EXPECT_EQ(place.fault, "The reference's sensor is mounted farther forward than stated");
   EXPECT_EQ(place.action, "Add 30.0 cm to `sensor_forward_m` of the poses");
+}
+
+// The values of the file with all effects of the camera corrected.
+TEST(Advice, SaysTheNewValuesOfACamera) {
+  StatedVehicle vehicle = stated_vehicle();
+  MountedCamera camera;
+  camera.name = "cam2";
+  camera.camera.model = CameraModel::kKannalaBrandt;
+  camera.camera.parameters = {400.0, 401.0, 320.5, 240.0, -0.01, 0.002, 0.0, 0.0};
+  camera.T_vehicle_camera.translation() = Eigen::Vector3d(1.5, 0.9, 1.1);
+  vehicle.rig.cameras.push_back(camera);
+  Diagnosis d;
+  for (const auto& [effect, size] : std::map<std::string, double>{{"cam2.centre_y", 2.0},
+                                                                  {"cam2.distortion2", 0.001},
+                                                                  {"cam2.focal", 0.01},
+                                                                  {"cam2.height", -0.05},
+                                                                  {"cam.height", 0.01}})
+    d.causes.push_back(cause(effect, size, 0.001));
+  const auto advice = advice_of(d, vehicle);
+  const auto action_of = [&](const std::string& effect) {
+    const auto found = std::find_if(advice.begin(), advice.end(),
+                                    [&](const Advice& a) { return a.effect == effect; });
+    return found == advice.end() ? std::string() : found->action;
+  };
+  EXPECT_EQ(action_of("cam2.focal"),
+            "Set `intrinsics` of cam2 to [404.00, 405.01, 320.50, 242.00] (stated: [400.00, "
+            "401.00, 320.50, 240.00])");
+  EXPECT_EQ(action_of("cam2.centre_y"), action_of("cam2.focal"));
+  EXPECT_EQ(action_of("cam2.distortion2"),
+            "Set `distortion_coefficients` of cam2 to [-0.01000, 0.00300, 0.00000, 0.00000] "
+            "(stated: [-0.01000, 0.00200, 0.00000, 0.00000])");
+  EXPECT_NE(action_of("cam2.height").find("Set `T_BS` of cam2 to [1.00000, "), std::string::npos);
+  EXPECT_NE(action_of("cam2.height").find(", 1.05000, "), std::string::npos);
+  EXPECT_EQ(action_of("cam.height"),
+            "Correct it with `--write-model` and `roadbook map --model`, or calibrate every camera "
+            "again");
 }
 
 // Both rows say the values that are right when both faults are corrected.

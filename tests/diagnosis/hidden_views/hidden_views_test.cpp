@@ -214,6 +214,35 @@ TEST(HiddenViews, NamesCausesOfEveryKindThroughTheMap) {
   }
 }
 
+// Cameras as they are mounted, and the parts of a lens. Ground and cameras that are raised or
+// tilted together give the same views, so these names form a set.
+TEST(HiddenViews, NamesHowCamerasAreMountedAndThePartsOfTheirLenses) {
+  const Secret causes[] = {{{"cam2.height", 0.03}},    {{"cam1.lateral", -0.04}},
+                           {{"cam3.pitch", -0.008}},   {{"cam.roll", 0.006}},
+                           {{"cam1.aspect", 0.006}},   {{"cam2.centre_x", 2.5}},
+                           {{"cam0.centre_y", -2.5}},  {{"cam1.distortion2", 0.002}},
+                           {{"rig.rotation", 0.0175}}, {{"rig.roll", -0.0175}}};
+  std::uint64_t seed = 120;
+  for (const Secret& secret : causes) {
+    const Folder folder;
+    const ViewOutcome o = run_hidden_views(short_drive(++seed, secret), folder / "views");
+    const auto& [name, size] = *secret.begin();
+    EXPECT_EQ(o.extra(), 0U) << o.to_line();
+    const FoundCause* cause = o.cause(name);
+    ASSERT_NE(cause, nullptr) << o.to_line();
+    EXPECT_NEAR(cause->size, size, 3.0 * sigma_of(*cause)) << o.to_line();
+  }
+  for (const auto& [of_cameras, of_ground] :
+       {std::pair("cam.height", "ground.height"), std::pair("rig.pitch", "ground.slope")})
+    for (const char* hidden : {of_cameras, of_ground}) {
+      const Folder folder;
+      const ViewOutcome o =
+          run_hidden_views(short_drive(140, {{hidden, -0.015}}), folder / "views");
+      EXPECT_TRUE(o.names(of_cameras) && o.names(of_ground)) << o.to_line();
+      EXPECT_EQ(o.extra(), 0U) << o.to_line();
+    }
+}
+
 // A constant radius error is not one that grows with speed, nor the reverse; slip is not a latency.
 TEST(HiddenViews, ANameInPlaceOfTheTrueOneIsDoubtedByWhatItsSizeDependsOn) {
   for (const auto& [name, size] : {std::pair("wheels0.radius", 0.0063),

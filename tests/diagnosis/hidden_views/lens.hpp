@@ -12,6 +12,7 @@ struct OwnLens {
   double centre_u = 640.0;
   double centre_v = 400.0;
   double k1 = 0.0, k2 = 0.0, k3 = 0.0, k4 = 0.0;
+  double stretch = 1.0;  ///< horizontal radius over `focal`; the vertical one is shrunk as much
 
   [[nodiscard]] std::optional<Eigen::Vector2d> see(const Eigen::Vector3d& p) const {
     const double across = std::sqrt(p.x() * p.x() + p.y() * p.y());
@@ -21,7 +22,8 @@ struct OwnLens {
     const double a5 = a3 * angle * angle;
     const double a7 = a5 * angle * angle;
     const double radius = focal * (angle + k1 * a3 + k2 * a5 + k3 * a7 + k4 * a7 * angle * angle);
-    return Eigen::Vector2d(centre_u + radius * p.x() / across, centre_v + radius * p.y() / across);
+    return Eigen::Vector2d(centre_u + radius * stretch * p.x() / across,
+                           centre_v + radius * (2.0 - stretch) * p.y() / across);
   }
 };
 

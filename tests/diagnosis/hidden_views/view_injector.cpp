@@ -256,7 +256,9 @@ void write_hidden_views(const HiddenViewOptions& options, const std::filesystem:
   for (std::size_t i = 0; options.imu && i < recording.imu.size(); ++i)
     writer.write_imu(recording.imu[i]);
   // Camera effects do not change the reference poses.
-  std::erase_if(streams.secret, [](const auto& effect) { return effect.first.starts_with("cam"); });
+  std::erase_if(streams.secret, [](const auto& effect) {
+    return effect.first.starts_with("cam") || effect.first.starts_with("rig");
+  });
   if (options.reference) writer.write_truth(record_drive(streams).poses);
   writer.finish();
   const WheelModel& wheels = recording.wheel_model;
@@ -277,13 +279,17 @@ const std::vector<EffectRange>& practical_view_ranges() {
   static const std::vector<EffectRange> kRanges = [] {
     std::vector<EffectRange> ranges;
     const std::vector<EffectRange> camera{
-        {"focal", 0.002, 0.01},         {"centre", 1.0, 5.0},     {"distortion", 0.0008, 0.005},
-        {"rotation", 0.0017, 0.017},    {"position", 0.01, 0.10}, {"latency", 0.005, 0.04},
-        {"rolling_shutter", 0.01, 0.03}};
+        {"focal", 0.002, 0.01},          {"centre", 1.0, 5.0},     {"distortion", 0.0008, 0.005},
+        {"rotation", 0.0017, 0.017},     {"position", 0.01, 0.10}, {"latency", 0.005, 0.04},
+        {"rolling_shutter", 0.01, 0.03}, {"pitch", 0.0017, 0.017}, {"roll", 0.0017, 0.017},
+        {"lateral", 0.01, 0.10},         {"height", 0.01, 0.05},   {"aspect", 0.002, 0.01},
+        {"centre_x", 1.0, 5.0},          {"centre_y", 1.0, 5.0},   {"distortion2", 0.0004, 0.003}};
     for (const EffectRange& r : camera) {
       ranges.push_back({"cam1." + r.name, r.low, r.high});
       ranges.push_back({"cam." + r.name, r.low, r.high});
     }
+    for (const char* turn : {"rig.rotation", "rig.pitch", "rig.roll"})
+      ranges.push_back({turn, 0.0035, 0.0175});
     for (const EffectRange& r : practical_ranges())
       // Views show neither wet patches nor a locked axle nor wheel noise.
       if (r.name.starts_with("wheels0.") && r.name != "wheels0.wet_patch" &&

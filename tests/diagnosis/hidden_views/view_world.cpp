@@ -19,6 +19,25 @@ Eigen::Matrix3d looking(double heading, double down) {
   return axes;
 }
 
+// Turns two of the axes: `one` goes towards `other` by an angle.
+void lean(Eigen::Matrix3d& axes, int one, int other, double angle) {
+  const Eigen::Vector3d a = axes.col(one);
+  const Eigen::Vector3d b = axes.col(other);
+  axes.col(one) = std::cos(angle) * a + std::sin(angle) * b;
+  axes.col(other) = std::cos(angle) * b - std::sin(angle) * a;
+}
+
+// The axes ahead, left and up of a body that is turned to the right, then lifts its front, then
+// leans to its right.
+Eigen::Matrix3d turned_body(double right, double up, double clockwise) {
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  constexpr int kAhead = 0, kLeft = 1, kUp = 2;
+  lean(axes, kLeft, kAhead, right);
+  lean(axes, kAhead, kUp, up);
+  lean(axes, kLeft, kUp, clockwise);
+  return axes;
+}
+
 }  // namespace
 
 OwnMotion::OwnMotion(const HiddenViewOptions& options,
@@ -133,16 +152,21 @@ std::vector<OwnCamera> hidden_cameras(const Secret& secret) {
     };
     OwnCamera& camera = cameras[c];
     camera.lens.focal *= 1.0 + size("focal");
-    camera.lens.centre_u += size("centre");
-    camera.lens.centre_v += size("centre");
+    camera.lens.stretch += 0.5 * size("aspect");
+    camera.lens.centre_u += size("centre") + size("centre_x");
+    camera.lens.centre_v += size("centre") + size("centre_y");
     camera.lens.k1 += size("distortion");
-    // Rotated further to the right.
-    const double turn = size("rotation");
-    const Eigen::Vector3d right = camera.axes.col(0);
-    const Eigen::Vector3d forward = camera.axes.col(2);
-    camera.axes.col(2) = std::cos(turn) * forward + std::sin(turn) * right;
-    camera.axes.col(0) = std::cos(turn) * right - std::sin(turn) * forward;
-    camera.place.x() += size("position");
+    camera.lens.k2 += size("distortion2");
+    constexpr int kRight = 0, kDown = 1, kForward = 2;
+    lean(camera.axes, kForward, kRight, size("rotation"));
+    lean(camera.axes, kDown, kForward, size("pitch"));
+    lean(camera.axes, kRight, kDown, size("roll"));
+    camera.place += Eigen::Vector3d(size("position"), size("lateral"), size("height"));
+    // The whole rig: about the vehicle's own axes.
+    const Eigen::Matrix3d turned =
+        turned_body(of(secret, "rig.rotation"), of(secret, "rig.pitch"), of(secret, "rig.roll"));
+    camera.axes = turned * camera.axes;
+    camera.place = turned * camera.place;
     camera.latency_s = size("latency");
     camera.shutter_s = size("rolling_shutter");
   }
