@@ -5,6 +5,7 @@
 #include "apps/summaries/diagnosis_summary.hpp"
 #include "apps/verb.hpp"
 #include "base/whole_file.hpp"
+#include "workflows/diagnosis/correctable_model.hpp"
 #include "workflows/settings/effect_model.hpp"
 
 namespace roadbook {
@@ -53,7 +54,7 @@ void run_diagnose(const DiagnoseCommand& command, int threads, Console& console)
   const auto hold = command.keep ? hold_ledger(command.map) : nullptr;
   const DiagnosisRun made = run_diagnosis(request, threads, console);
   if (!command.write_model.empty())
-    write_whole_file(command.write_model, effect_model_text(made.diagnosis.extended));
+    write_whole_file(command.write_model, effect_model_text(correctable_model(made.diagnosis)));
   if (!command.output.empty())
     write_whole_file(command.output, diagnosis_page(made.diagnosis, made.name, made.stated));
   nlohmann::ordered_json result = say_diagnosis(made, command.compare, console);

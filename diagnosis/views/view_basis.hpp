@@ -28,7 +28,11 @@ inline constexpr std::array<std::string_view, 15> kCameraColumns{
     "position", "lateral",         "height"};
 inline constexpr std::size_t kLatencyColumn = 0;
 inline constexpr std::size_t kShutterColumn = 1;
+inline constexpr std::size_t kPitchColumn = 10;
+inline constexpr std::size_t kLateralColumn = 13;
 inline constexpr std::size_t kHeightColumn = 14;
+static_assert(kCameraColumns[kLateralColumn] == "lateral");
+static_assert(kCameraColumns[kPitchColumn] == "pitch");
 static_assert(kCameraColumns[kHeightColumn] == "height");
 /// Turns of the rig as one body. Each is an effect of all cameras together only.
 inline constexpr std::array<std::string_view, 3> kRigColumns{"rotation", "pitch", "roll"};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "base/index.hpp"
 #include "base/median.hpp"
@@ -20,18 +21,40 @@ constexpr double kFirstGate =
 
 // A linearly independent subset of the effects; sums of others would be determined by their priors
 // alone. Of the latencies, that of the first camera is left out and that of the wheels stays: poses
-// then remain those of the image stamps, and hinges found at them fit the nominal ones. The
-// ground's height stays instead of the first camera's, and both components of an image centre.
+// then remain those of the image stamps, and hinges found at them fit the nominal ones. Height and
+// slope of the ground stay instead of height and pitch of the first camera, for the same reason,
+// and both components of an image centre instead of their sum.
 std::vector<ViewCause> independent(std::vector<ViewCause> causes, const ViewBasis& basis) {
-  const bool wheels = std::any_of(causes.begin(), causes.end(),
-                                  [](const ViewCause& c) { return c.name == "wheels0.latency"; });
+  const auto has = [&](const char* name) {
+    return std::any_of(causes.begin(), causes.end(),
+                       [&](const ViewCause& c) { return c.name == name; });
+  };
+  const bool wheels = has("wheels0.latency");
+  const bool ground = basis.cameras > 1 && has("ground.slope");
   std::erase_if(causes, [&](const ViewCause& c) {
     return (basis.cameras > 1 && c.columns.size() > 1) || c.name == "wheels0.radius" ||
            c.name == "wheels0.radius_difference" || c.name.ends_with(".centre") ||
-           (basis.cameras > 1 && c.columns.front() == basis.camera(0) + kHeightColumn) ||
+           (ground && c.columns.front() == basis.camera(0) + kHeightColumn) ||
+           (ground && c.columns.front() == basis.camera(0) + kPitchColumn) ||
            (wheels && c.columns.front() == basis.camera(0) + kLatencyColumn);
   });
   return causes;
+}
+
+// Takes heights and lateral positions of cameras out of `causes`. A bend of the ground that is not
+// yet fitted looks like a rig that is mounted decimetres farther back, with cameras at other
+// heights. The car would then meet the line of the bend in another place, and stay there.
+std::vector<ViewCause> held_until_bends_are_found(const ViewBasis& basis,
+                                                  std::vector<ViewCause>& causes) {
+  const auto is_held = [&](const ViewCause& c) {
+    const std::size_t column = c.columns.front();
+    return column < basis.wheels() && (column % basis.per_camera() == kHeightColumn ||
+                                       column % basis.per_camera() == kLateralColumn);
+  };
+  std::vector<ViewCause> held;
+  std::copy_if(causes.begin(), causes.end(), std::back_inserter(held), is_held);
+  std::erase_if(causes, is_held);
+  return held;
 }
 
 void forget_hinges(ViewBasis& basis, std::vector<ViewCause>& causes) {
@@ -133,6 +156,7 @@ bool settle_noise(ViewData& all,
                   ViewFit& fit,
                   std::vector<std::uint8_t>& good) {
   std::vector<ViewCause> causes = independent(view_causes(all, basis), basis);
+  const std::vector<ViewCause> held = held_until_bends_are_found(basis, causes);
   std::vector<double> scatter;
   std::vector<double> freedom;
   std::array<double, 6> sway{};
@@ -140,6 +164,7 @@ bool settle_noise(ViewData& all,
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
     if (round > 0 && hinges) find_hinges(fit, free, basis, causes, num_threads);
+    if (round + 1 == kRounds) causes.insert(causes.end(), held.begin(), held.end());
     ViewSystem system(fit.data, basis, num_threads);
     if (!system.linearise(free, fit.noise)) return false;
     const Saturated s = saturate(system, causes, basis, fit.data, known, free);
