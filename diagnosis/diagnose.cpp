@@ -12,6 +12,7 @@
 #include "diagnosis/streams/coarse_readings.hpp"
 #include "diagnosis/streams/motion_prediction.hpp"
 #include "diagnosis/streams/stream_faults.hpp"
+#include "diagnosis/tilt/tilt_diagnosis.hpp"
 
 namespace roadbook {
 namespace {
@@ -74,7 +75,10 @@ PreparedMotion prepare_motion(const MotionStreams& recorded,
 Diagnosis diagnose(const MotionStreams& streams,
                    const std::string& name,
                    const DiagnosisOptions& options) {
-  const PreparedMotion prepared = prepare_motion(streams, name, options);
+  MotionStreams level = streams;
+  const TiltedDrive tilted{"", &level};
+  const Diagnosis tilt = diagnose_tilt({&tilted, 1}, options);
+  const PreparedMotion prepared = prepare_motion(level, name, options);
   Diagnosis d = diagnose(*prepared.problem, options.search);
   d.notes.insert(d.notes.begin(), prepared.notes.begin(), prepared.notes.end());
   d.length_m = prepared.length_m;
@@ -82,6 +86,7 @@ Diagnosis diagnose(const MotionStreams& streams,
   add_known(options.known, d);
   const Observations& obs = prepared.problem->observations();
   add_reckoning(obs, options.known, d);
+  add_findings(tilt, d);
   if (options.compare)
     d.simulated = compare_with_simulation(obs, options.known, d.extended,
                                           motion_model(prepared.problem->nominal()).noise);

@@ -12,6 +12,7 @@
 #include "diagnosis/separating_causes.hpp"
 #include "diagnosis/stream_checks.hpp"
 #include "diagnosis/streams/drive_streams.hpp"
+#include "diagnosis/tilt/tilt_diagnosis.hpp"
 #include "diagnosis/views/view_alternatives.hpp"
 
 namespace roadbook {
@@ -21,15 +22,18 @@ constexpr std::size_t kFewestKeyframes = 20;
 constexpr std::size_t kFewestMapViews = 500;
 
 // The motion of the car against reference poses; a drive that says nothing of it leaves a note.
-void add_motion(const MotionStreams& streams,
+void add_motion(MotionStreams streams,
                 const Drive& drive,
                 const DiagnosisOptions& options,
                 std::vector<Diagnosis>& parts,
                 double& length_m) {
+  const TiltedDrive tilted{"", &streams};
+  const Diagnosis tilt = diagnose_tilt({&tilted, 1}, options);
   try {
     const PreparedMotion prepared = prepare_motion(streams, drive.folder().string(), options);
     length_m = prepared.length_m;
     parts.push_back(diagnose(*prepared.problem, options.search));
+    add_findings(tilt, parts.back());
     parts.back().notes.insert(parts.back().notes.begin(), prepared.notes.begin(),
                               prepared.notes.end());
   } catch (const BadInput& bad) {

@@ -9,6 +9,7 @@
 #include "diagnosis/friction/friction_problem.hpp"
 #include "diagnosis/inference/score_table.hpp"
 #include "diagnosis/range/fitted_mixture.hpp"
+#include "diagnosis/tilt/tilt_problem.hpp"
 
 namespace roadbook {
 namespace {
@@ -87,6 +88,8 @@ OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden)
   DiagnosisOptions options;
   options.library.places = options.library.grammar = false;
   const PreparedMotion prepared = prepare_motion(streams, "drive", options);
+  const TiltProblem tilt(tilt_windows(streams, options.observation.step_s), tilt_axes(streams.imu),
+                         streams.bank_is_known);
   const MotionProblem& problem = *prepared.problem;
   const CauseModel nominal = problem.nominal();
   const ScoreTable table(nominal, problem.project(nominal, problem.candidates(nominal)));
@@ -107,6 +110,7 @@ OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden)
   answer.gain = truth.log_likelihood - nominal.log_likelihood;
   answer.weakest = hidden.size() == 1 && !knowing.accepted.empty() ? std::optional(answer.strength)
                                                                    : weakest_of(problem, knowing);
+  if (tilt.usable()) add_answer(of_problem(tilt, hidden), answer);
   return answer;
 }
 

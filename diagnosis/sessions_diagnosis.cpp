@@ -4,8 +4,8 @@
 
 #include "diagnosis/inference/extended_model.hpp"
 #include "diagnosis/known_causes.hpp"
-#include "diagnosis/sessions_problem.hpp"
 #include "diagnosis/stream_checks.hpp"
+#include "diagnosis/tilt/tilt_diagnosis.hpp"
 
 namespace roadbook {
 namespace {
@@ -17,25 +17,7 @@ const std::string& source_of(const SessionStreams& drive) {
   return drive.source.empty() ? drive.name : drive.source;
 }
 
-// Of a name and its variants of single drives, the name alone.
-void drop_variants(const std::vector<SessionProblem>& drives, std::vector<std::string>& names) {
-  std::erase_if(names, [&](const std::string& name) {
-    return std::any_of(drives.begin(), drives.end(),
-                       [&](const SessionProblem& d) { return name.ends_with(" in " + d.name); });
-  });
-}
-
 }  // namespace
-
-Diagnosis diagnose_together(const std::vector<SessionProblem>& drives,
-                            const SearchOptions& options) {
-  if (drives.empty()) return {};
-  if (drives.size() == 1) return diagnose(*drives.front().problem, options);
-  Diagnosis d = diagnose(SessionsProblem(drives), options);
-  drop_variants(drives, d.looked_for);
-  drop_variants(drives, d.not_observable);
-  return d;
-}
 
 void mark_session(const std::string& session, Diagnosis& d) {
   for (FoundCause& c : d.causes) c.session = session;
@@ -59,7 +41,11 @@ Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
   DiagnosisOptions of_one = options;
   of_one.min_length_m = std::min(options.min_length_m, kShortestRun_m);
   of_one.min_duration_s = std::min(options.min_duration_s, kShortestRun_s);
-  for (const SessionStreams& drive : drives) {
+  std::vector<SessionStreams> level(drives.begin(), drives.end());
+  std::vector<TiltedDrive> tilted;
+  for (SessionStreams& drive : level) tilted.push_back({drive.name, &drive.streams});
+  const Diagnosis tilt = diagnose_tilt(tilted, options);
+  for (const SessionStreams& drive : level) {
     prepared.push_back(prepare_motion(drive.streams, source_of(drive), of_one));
     problems.push_back({drive.name, prepared.back().problem.get()});
     for (const std::string& note : prepared.back().notes) notes.push_back(drive.name + ": " + note);
@@ -74,6 +60,7 @@ Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
   d.length_m = length_m;
   note_beyond_known(options.known, d);
   add_known(options.known, d);
+  add_findings(tilt, d);
   return d;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/sessions_problem.hpp"
+#include "diagnosis/diagnose_together.hpp"
 
 namespace roadbook {
 
@@ -22,11 +22,6 @@ struct SessionStreams {
 /// options ask for (1 m and 2 s), if all together are long enough.
 [[nodiscard]] Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
                                           const DiagnosisOptions& options = {});
-
-/// Diagnosis of one kind of readings of several drives together. With a single drive, its effects
-/// count as the vehicle's. Empty without drives.
-[[nodiscard]] Diagnosis diagnose_together(const std::vector<SessionProblem>& drives,
-                                          const SearchOptions& options);
 
 /// Marks everything found as of one drive of several; notes and flags begin with its name.
 void mark_session(const std::string& session, Diagnosis& diagnosis);

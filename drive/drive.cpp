@@ -191,13 +191,16 @@ void Drive::for_each_imu_reading(const std::function<void(const ImuReading&)>& v
   const std::int64_t added_ns = offset_ns(imu->time_offset_s);
   impl_->stream<ImuReading>("imu0", [&](const fs::path& file, ProblemList& problems) {
     const auto off = imu_imperfections(impl_->known);
+    const Eigen::Matrix3d tilt = tilt_rotation(off.tilt_roll, off.tilt_pitch);
     const std::int64_t shift_ns = added_ns + impl_->late_images_ns() - offset_ns(off.latency);
     (void)read_imu_table(file, {}, problems, [&](ImuReading reading) {
       reading.t_ns = corrected_stamp(impl_->known, impl_->origin_ns, reading.t_ns) + shift_ns;
       reading.angular_velocity_rad_s = R * reading.angular_velocity_rad_s;
       reading.specific_force_m_s2 = R * reading.specific_force_m_s2;
       reading.angular_velocity_rad_s.z() -= off.gyro_bias;
-      reading.angular_velocity_rad_s /= 1.0 + off.gyro_scale;
+      reading.angular_velocity_rad_s =
+          tilt * reading.angular_velocity_rad_s / (1.0 + off.gyro_scale);
+      reading.specific_force_m_s2 = tilt * reading.specific_force_m_s2;
       visit(reading);
     });
   });

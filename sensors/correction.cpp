@@ -18,12 +18,26 @@ constexpr std::array kRigEffects{"focal",      "aspect",      "centre",   "centr
                                  "distortion", "distortion2", "rotation", "pitch",    "roll",
                                  "position",   "lateral",     "height"};
 constexpr std::array kNoise{"outliers", "variance(speed)", "variance(turn)", "correlation"};
-constexpr std::array kStreamEffects{
-    "wheels0.left_radius",       "wheels0.right_radius", "wheels0.radius",
-    "wheels0.radius_difference", "wheels0.track_width",  "wheels0.latency",
-    "wheels0.slip_acceleration", "wheels0.radius_speed", "wheels0.eccentricity",
-    "steering0.offset",          "steering0.ratio",      "steering0.understeer",
-    "steering0.wheelbase",       "clock.drift",          "cam.latency"};
+constexpr std::array kStreamEffects{"wheels0.left_radius",
+                                    "wheels0.right_radius",
+                                    "wheels0.radius",
+                                    "wheels0.radius_difference",
+                                    "wheels0.track_width",
+                                    "wheels0.latency",
+                                    "wheels0.slip_acceleration",
+                                    "wheels0.radius_speed",
+                                    "wheels0.eccentricity",
+                                    "steering0.offset",
+                                    "steering0.ratio",
+                                    "steering0.understeer",
+                                    "steering0.wheelbase",
+                                    "clock.drift",
+                                    "cam.latency",
+                                    "imu0.gyro_bias",
+                                    "imu0.gyro_scale",
+                                    "imu0.latency",
+                                    "imu0.tilt_roll",
+                                    "imu0.tilt_pitch"};
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) * 1e-9;

@@ -94,6 +94,10 @@ constexpr std::array kImuEffects{
                "scale error of the turn rates read, relative"},
     EffectInfo{"imu0.latency", "s", 0.05, -5.0, 5.0, "turn rate",
                "a reading stamped t shows the motion at t - size"},
+    EffectInfo{"imu0.tilt_roll", "rad", 0.05, -0.5, 0.5, "turn rate",
+               "roll of the IMU against its stated mounting, positive with its right side down"},
+    EffectInfo{"imu0.tilt_pitch", "rad", 0.05, -0.5, 0.5, "turn rate",
+               "pitch of the IMU against its stated mounting, positive with its front up"},
 };
 
 constexpr std::array kWorldEffects{
@@ -104,6 +108,8 @@ constexpr std::array kWorldEffects{
                "rise of the ground ahead, seen from the vehicle (its nose hangs down)"},
     EffectInfo{"ground.hinge", "rad", 0.05, -0.5, 0.5, "position",
                "added to the change of slope at the hinge line"},
+    EffectInfo{"ground.bank", "1", 0.03, 0.0, 0.3, "turn rate",
+               "share of each turn that a car in banked bends does not read: 1 - cos(bank)"},
     EffectInfo{"map.scale", "1", 0.01, -0.5, 1.0, "position", "scale of the map, relative"},
     EffectInfo{"map.moved_landmarks", "1", 0.1, 0.0, 1.0, "", "share of landmarks that have moved"},
     EffectInfo{"map.landmarks_gone", "1", 0.1, 0.0, 1.0, "", "share of landmarks that are gone"},

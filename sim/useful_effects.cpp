@@ -93,7 +93,8 @@ void refuse_effects_without_use(const Scenario& scenario, const SimulateOptions&
       continue;
     }
     const bool everywhere = is_of_camera(sensor) || sensor == "wheels0" || sensor == "steering0" ||
-                            sensor == "clock" || sensor == "ground" || sensor == "map";
+                            sensor == "clock" || (sensor == "ground" && name != "ground.bank") ||
+                            sensor == "map";
     // A scanner has no beacons.
     const bool range = sensor == "range0" && name != "range0.bias" && name != "range0.scale";
     const bool imu = sensor == "imu0" && scenario.imu;

@@ -127,6 +127,8 @@ const std::vector<EffectRange>& practical_effects() {
                                                  {"imu0.gyro_bias", 0.00035, 0.005},
                                                  {"imu0.gyro_scale", 0.005, 0.02},
                                                  {"imu0.latency", 0.005, 0.05},
+                                                 {"imu0.tilt_roll", 0.005, 0.1},
+                                                 {"imu0.tilt_pitch", 0.005, 0.1},
                                                  {"clock.drift", 1e-5, 1e-4},
                                                  {"cam.latency", 0.005, 0.08},
                                                  {"cam.rotation", 0.0017, 0.017},

@@ -149,6 +149,7 @@ class LogReader {
       attitudes_[i].t_s = poses[i].t_s;
       if (pitch.size() == poses.size()) attitudes_[i].slope_rad = pitch[i];
       if (roll.size() == poses.size()) attitudes_[i].bank_rad = roll[i];
+      log_.streams.bank_is_known = log_.streams.bank_is_known || roll.size() == poses.size();
     }
   }
 
@@ -157,6 +158,8 @@ class LogReader {
   void measured_by(YamlMap& yaml) {
     std::string by = "map";
     yaml.read("measured_by", by);
+    // A tracker hangs in a room, whose floor is level.
+    if (by == "tracker") log_.streams.bank_is_known = true;
     if (by != "map" && by != "satellites" && by != "tracker")
       yaml.report("measured_by", by, "map, satellites or tracker");
     if (by == "map") return;

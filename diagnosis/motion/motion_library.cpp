@@ -49,6 +49,7 @@ class ColumnBuilder {
 bool shows_motion(const Observations& obs, const MotionEffect& effect) {
   if (!has_streams(obs, effect.streams) || !shows_effect(obs.wheels_read, effect.name))
     return false;
+  if (effect.name == kBank && obs.bank_is_known) return false;
   return effect.name != "steering0.wheelbase" || !obs.steering.empty() ||
          obs.wheels_read == WheelsRead::kFront;
 }

@@ -168,7 +168,7 @@ class PassRunner {
   void gyro(std::size_t j) {
     const double t = gyro_time();
     const double u = since_knot(j, t) / trajectory_.step_s();
-    const double gain = 1.0 + point_.effects.imu.gyro_scale;
+    const double gain = (1.0 + point_.effects.imu.gyro_scale) * (1.0 - point_.effects.bank);
     row_[kYawA] = (1.0 - u) * gain;
     row_[kYawB] = u * gain;
     measure(Channel::kGyro, gyro_, t);
@@ -178,7 +178,8 @@ class PassRunner {
     const double t = steering_time();
     const double u = since_knot(j, t) / trajectory_.step_s();
     const MotionState s = trajectory_.after(j, since_knot(j, t));
-    const double L = obs_.wheel_model.wheelbase_m * (1.0 + point_.effects.steering.wheelbase);
+    const double L = obs_.wheel_model.wheelbase_m * (1.0 + point_.effects.steering.wheelbase) *
+                     (1.0 - point_.effects.bank);
     const double speed = std::copysign(std::max(std::abs(s.speed), 1e-3), s.speed);
     const double square = speed * speed + L * L * s.yaw_rate * s.yaw_rate;
     const double gain = 1.0 + point_.effects.steering.ratio;

@@ -39,9 +39,9 @@ HeldEffects saturated_library(const Observations& obs,
   options.grammar = with_terms;
   std::vector<Candidate> candidates = list_candidates(obs, point, options);
   // Leave out effects that change readings in the same way as a free effect: poses with
-  // autocorrelated errors would use both.
+  // autocorrelated errors would use both. A bank is the sum of the scales of three streams.
   std::erase_if(candidates, [](const Candidate& c) {
-    return c.covariate == "place" || c.covariate.ends_with("acceleration") ||
+    return c.name == kBank || c.covariate == "place" || c.covariate.ends_with("acceleration") ||
            c.covariate.ends_with("phase") || c.hook == "poses.scale" || c.hook == "steering0.time";
   });
   HeldEffects s{build_library(obs, point, std::move(candidates)), {}};

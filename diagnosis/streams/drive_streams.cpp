@@ -40,11 +40,17 @@ MotionStreams motion_streams(const Drive& drive, const std::vector<TimedPose>& r
   drive.for_each_imu_reading([&](const ImuReading& r) {
     streams.gyro.push_back({seconds(r.t_ns), r.angular_velocity_rad_s.z()});
     pitch_rates.push_back({seconds(r.t_ns), r.angular_velocity_rad_s.y()});
+    streams.imu.push_back({seconds(r.t_ns), r.angular_velocity_rad_s, r.specific_force_m_s2});
   });
   // The body may be mounted off level: the slope under the wheels is that of the way.
   std::vector<Attitude> road = slopes_of(streams.poses, heights);
   for (std::size_t i = 0; i < road.size(); ++i) road[i].bank_rad = body[i].bank_rad;
   level_motion(road, body, pitch_rates, streams);
+  // A planar reference has a roll of exactly 0, or of rounding.
+  constexpr double kRounding = 1e-6;
+  streams.bank_is_known = std::any_of(
+      body.begin(), body.end(), [](const Attitude& a) { return std::abs(a.bank_rad) > kRounding; });
+  streams.body = std::move(body);
   LoggedColumn temperature{"temperature", "degC", {}, {}};
   drive.for_each_friction_reading([&](const FrictionReading& r) {
     if (!r.temperature_c) return;

@@ -6,13 +6,6 @@
 
 namespace roadbook {
 
-/// Slope and bank of a vehicle at one time, from a reference in three dimensions.
-struct Attitude {
-  double t_s = 0.0;
-  double slope_rad = 0.0;  ///< of the road ahead: positive uphill
-  double bank_rad = 0.0;   ///< roll about the direction of travel: positive to the right side down
-};
-
 /// Turn rates [rad/s] about the vehicle's y axis (to its left), at the stamps of the gyro.
 using PitchRates = std::vector<GyroSample>;
 

@@ -30,6 +30,7 @@ constexpr std::array kMotionEffects{
     MotionEffect{"imu0.gyro_bias", SIZE_OF(imu.gyro_bias), kGyroBit},
     MotionEffect{"imu0.gyro_scale", SIZE_OF(imu.gyro_scale), kGyroBit},
     MotionEffect{"imu0.latency", SIZE_OF(imu.latency), kGyroBit},
+    MotionEffect{kBank, SIZE_OF(bank), kWheels | kSteeringBit | kGyroBit},
     MotionEffect{"clock.drift", SIZE_OF(clock_drift), kWheels | kSteeringBit | kGyroBit},
     MotionEffect{"cam.latency", SIZE_OF(pose.latency), kPoses},
     MotionEffect{"cam.rotation", SIZE_OF(pose.rotation), kPoses},

@@ -17,6 +17,7 @@ struct MotionEffects {
   SteeringImperfections<double> steering;
   ImuImperfections<double> imu;
   PoseImperfections<double> pose;
+  double bank = 0.0;  ///< share of each turn about the vertical that the car's own axis lacks
   double clock_drift =
       0.0;  ///< relative rate of the clock of wheels, steering and IMU to that of the poses
 };
@@ -31,6 +32,9 @@ struct MotionEffect {
   double& (*size)(MotionEffects&);
   unsigned streams;
 };
+
+/// Bends that are banked. Only of references without roll: with it, streams are levelled.
+inline constexpr std::string_view kBank = "ground.bank";
 
 [[nodiscard]] std::span<const MotionEffect> motion_effects();
 /// Index of `name` in `motion_effects()`; asserts that it exists.

@@ -106,8 +106,8 @@ std::vector<double> predict_rows(const Observations& obs,
       const MotionState s =
           trajectory.rates_at(0.5 * (times.steering_begin[k] + times.steering_end[k]));
       const double speed = std::copysign(std::max(std::abs(s.speed), 1e-3), s.speed);
-      at(Channel::kSteering)[k] =
-          predict_steering(obs.wheel_model.wheelbase_m, effects.steering, speed, s.yaw_rate);
+      at(Channel::kSteering)[k] = predict_steering(obs.wheel_model.wheelbase_m, effects.steering,
+                                                   speed, (1.0 - effects.bank) * s.yaw_rate);
     }
   // The rate at the middle of the window, as in the derivative that the fit uses. Different
   // functions would leak errors of the trajectory into the innovations.
@@ -115,7 +115,8 @@ std::vector<double> predict_rows(const Observations& obs,
     for (std::size_t k = 0; k < obs.gyro.size(); ++k)
       at(Channel::kGyro)[k] = predict_gyro(
           effects.imu,
-          trajectory.rates_at(0.5 * (times.gyro_begin[k] + times.gyro_end[k])).yaw_rate);
+          (1.0 - effects.bank) *
+              trajectory.rates_at(0.5 * (times.gyro_begin[k] + times.gyro_end[k])).yaw_rate);
   if ((streams & kPoses) != 0)
     predict_poses(obs, trajectory, effects, times.poses,
                   {at(Channel::kPoseAlong), at(Channel::kPoseAcross), at(Channel::kPoseHeading)});

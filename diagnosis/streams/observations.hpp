@@ -52,6 +52,7 @@ struct Observations {
   WheelsRead wheels_read = WheelsRead::kBoth;
   bool poses_have_heading = true;
   bool poses_of_map = false;
+  bool bank_is_known = false;
   double origin_s = 0.0;  ///< time at which all clocks agree, even if one drifts
   double step_s = 0.08;
   std::vector<PoseSample> poses;  ///< headings unwrapped

@@ -119,6 +119,7 @@ Observations observe(const MotionStreams& streams, const ObservationOptions& opt
   obs.wheels_read = streams.wheels_read;
   obs.poses_have_heading = streams.poses_have_heading;
   obs.poses_of_map = streams.poses_of_map;
+  obs.bank_is_known = streams.bank_is_known;
   obs.step_s = options.step_s;
   obs.poses = streams.poses;
   if (obs.poses.empty()) return obs;

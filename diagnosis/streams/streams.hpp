@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,20 @@ struct GyroSample {
   double rate_rad_s = 0.0;  ///< about the vehicle's z axis
 };
 
+/// One reading of a whole IMU in the vehicle frame as stated (`T_BS`).
+struct ImuSample {
+  double t_s = 0.0;
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< acceleration less gravity
+};
+
+/// Slope and bank of a vehicle at one time, from a reference in three dimensions.
+struct Attitude {
+  double t_s = 0.0;
+  double slope_rad = 0.0;  ///< of the road ahead: positive uphill
+  double bank_rad = 0.0;   ///< roll about the direction of travel: positive to the right side down
+};
+
 /// Which wheels are measured: both of the rear axle, or a single speed: the middle of the axle, one
 /// rear wheel, or a steered front wheel. A single speed contains no difference of the wheels.
 enum class WheelsRead { kBoth, kMiddle, kLeft, kRight, kFront };
@@ -50,6 +65,11 @@ struct MotionStreams {
   std::vector<WheelSample> wheels;
   std::vector<SteeringSample> steering;
   std::vector<GyroSample> gyro;
+  /// All axes of the IMU that `gyro` is the levelled z axis of, one for each of its samples; empty
+  /// where only one axis is known.
+  std::vector<ImuSample> imu;
+  std::vector<Attitude> body;  ///< by the reference; empty where that is planar
+  bool bank_is_known = false;  ///< by the reference; else bends may be banked (`ground.bank`)
   /// Further logged columns: covariates of the generic effects. Their names differ from those of
   /// the built-in covariates.
   std::vector<LoggedColumn> columns;

@@ -19,11 +19,12 @@ Eigen::Vector2d predict_wheel_row(const WheelModel& model,
                                   const MotionEffects& effects,
                                   const TrueMotion<double>& motion) {
   TrueMotion<double> of_wheel = motion;
-  if (read == WheelsRead::kMiddle || read == WheelsRead::kFront) of_wheel.turn_rad = 0.0;
+  of_wheel.turn_rad *= 1.0 - effects.bank;
   if (read == WheelsRead::kFront) {
-    const double aside = model.wheelbase_m * (1.0 + effects.steering.wheelbase) * motion.turn_rad;
+    const double aside = model.wheelbase_m * (1.0 + effects.steering.wheelbase) * of_wheel.turn_rad;
     of_wheel.distance_m = std::copysign(std::hypot(motion.distance_m, aside), motion.distance_m);
   }
+  if (read == WheelsRead::kMiddle || read == WheelsRead::kFront) of_wheel.turn_rad = 0.0;
   return rolled(model, read, predict_wheel_turns(model, effects.wheels, of_wheel));
 }
 
@@ -42,7 +43,7 @@ Eigen::Matrix2d wheel_row_gain(const WheelModel& model,
   Eigen::Matrix2d gain;
   gain << row(1.0, 0.0), row(0.0, 1.0);
   if (read != WheelsRead::kFront) return gain;
-  const double L = model.wheelbase_m * (1.0 + effects.steering.wheelbase);
+  const double L = model.wheelbase_m * (1.0 + effects.steering.wheelbase) * (1.0 - effects.bank);
   const double forward = motion.distance_m;
   const double aside = L * motion.turn_rad;
   const double way = std::hypot(forward, aside);

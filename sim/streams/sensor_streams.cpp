@@ -5,6 +5,7 @@
 
 #include "base/random.hpp"
 #include "base/se3.hpp"
+#include "sensors/imu_imperfections.hpp"
 #include "sensors/steering.hpp"
 #include "sensors/stream_noise.hpp"
 #include "sensors/wheel_imperfections.hpp"
@@ -117,6 +118,7 @@ std::vector<ImuReading> simulate_imu(const VehicleMotion& drive,
   const double latency = effect_size(options.effects, "imu0", "latency");
   const double bias = effect_size(options.effects, "imu0", "gyro_bias");
   const double scale = effect_size(options.effects, "imu0", "gyro_scale");
+  const Eigen::Matrix3d tilt = tilt_rotation(options.effects);
   const double drift = effect_size(options.effects, "clock", "drift");
   Random random(options.seed, "imu");
   std::vector<StreamNoise> noise(6, StreamNoise(options.effects, "imu0"));
@@ -132,9 +134,10 @@ std::vector<ImuReading> simulate_imu(const VehicleMotion& drive,
         so3_log(before.linear().transpose() * after.linear()) / (2.0 * kHalf);
     const Eigen::Vector3d acceleration =
         (after.translation() - 2.0 * now.translation() + before.translation()) / (kHalf * kHalf);
-    reading.angular_velocity_rad_s = turning * (1.0 + scale) + Eigen::Vector3d(0.0, 0.0, bias);
-    reading.specific_force_m_s2 =
-        now.linear().transpose() * (acceleration + Eigen::Vector3d(0.0, 0.0, 9.81));
+    reading.angular_velocity_rad_s =
+        tilt.transpose() * turning * (1.0 + scale) + Eigen::Vector3d(0.0, 0.0, bias);
+    reading.specific_force_m_s2 = tilt.transpose() * now.linear().transpose() *
+                                  (acceleration + Eigen::Vector3d(0.0, 0.0, 9.81));
     const VehicleState state = drive.at(t);
     for (Eigen::Index i = 0; options.noise && i < 3; ++i) {
       const auto axis = static_cast<std::size_t>(i);

@@ -9,15 +9,12 @@
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/streams/wheel_rows.hpp"
 #include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
+#include "tests/support/found_causes.hpp"
 
 namespace roadbook {
 namespace {
 
-const FoundCause* cause_named(const Diagnosis& d, const std::string& effect) {
-  for (const FoundCause& c : d.causes)
-    if (c.effect == effect) return &c;
-  return nullptr;
-}
+using test::cause_named;
 
 MotionStreams left_wheel_alone(const std::string& effect, double size) {
   test::HiddenDriveOptions hidden;

@@ -1,3 +1,7 @@
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include "tests/drive/drive_fixture.hpp"
 
 namespace roadbook::test {
@@ -33,6 +37,29 @@ TEST(StatedMounting, KnownErrorsOfAGyroAreTakenOutAboutTheVehiclesUpAxis) {
   drive.correct({{"imu0.gyro_bias", 0.1}});
   drive.for_each_imu_reading(
       [&](const ImuReading& r) { EXPECT_DOUBLE_EQ(r.angular_velocity_rad_s.z(), -0.4); });
+}
+
+// By hand: the left axis of a mount that is rolled points up by the sine, its up axis to the right.
+TEST(StatedMounting, AKnownTiltOfTheImuIsTakenOut) {
+  const TemporaryFolder folder;
+  const auto d = write_small_drive(folder.path() / "d");
+  std::vector<ImuReading> read, right;
+  Drive drive = Drive::open(d);
+  drive.for_each_imu_reading([&](const ImuReading& r) { read.push_back(r); });
+  drive.correct({{"imu0.tilt_roll", 0.5}});
+  drive.for_each_imu_reading([&](const ImuReading& r) { right.push_back(r); });
+  ASSERT_EQ(right.size(), read.size());
+  const double s = std::sin(0.5), c = std::cos(0.5);
+  for (std::size_t i = 0; i < read.size(); ++i)
+    for (const auto& [raw, level] :
+         {std::pair{read[i].angular_velocity_rad_s, right[i].angular_velocity_rad_s},
+          std::pair{read[i].specific_force_m_s2, right[i].specific_force_m_s2}}) {
+      EXPECT_DOUBLE_EQ(level.x(), raw.x());
+      EXPECT_NEAR(level.y(), c * raw.y() - s * raw.z(), 1e-12);
+      EXPECT_NEAR(level.z(), s * raw.y() + c * raw.z(), 1e-12);
+    }
+  for (const Problem& problem : drive.warnings())
+    EXPECT_EQ(to_line(problem).find("tilt"), std::string::npos) << to_line(problem);
 }
 
 TEST(StatedMounting, OfAHingeInAModelItIsSaidWhyNothingIsCorrectedByIt) {

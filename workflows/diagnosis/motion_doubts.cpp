@@ -37,6 +37,7 @@ void end_with_poses(MotionStreams& streams) {
   std::erase_if(streams.wheels, is_later);
   std::erase_if(streams.steering, is_later);
   std::erase_if(streams.gyro, is_later);
+  std::erase_if(streams.imu, is_later);
 }
 
 // The radius of both wheels is the map's scale. An effect that the map or several other names

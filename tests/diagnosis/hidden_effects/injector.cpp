@@ -1,6 +1,7 @@
 #include "tests/diagnosis/hidden_effects/injector.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/random.hpp"
@@ -19,6 +20,10 @@ constexpr double kHeadingWalk = 0.001;   // [rad] after 1 m
 struct Wheels {
   std::vector<double> left{0.0}, right{0.0};
 };
+
+// Bends are banked inwards by one angle: the car turns about its own axis by the cosine of it.
+double bank_of(const Secret& s) { return std::acos(1.0 - of(s, "ground.bank")); }
+double kept_of_turn(const Secret& s) { return std::cos(bank_of(s)); }
 
 Wheels roll(const std::vector<Moment>& drive, const HiddenDriveOptions& o, const WheelModel& m) {
   const Secret& s = o.secret;
@@ -41,7 +46,7 @@ Wheels roll(const std::vector<Moment>& drive, const HiddenDriveOptions& o, const
     const Moment& a = drive[i - 1];
     const Moment& b = drive[i];
     double moved = b.distance - a.distance;
-    double turned = b.turned - a.turned;
+    double turned = kept_of_turn(s) * (b.turned - a.turned);
     const double root = std::sqrt(std::abs(moved)) * noise.growth(b);
     const double speed = 0.5 * (a.speed + b.speed);
     moved += kDistanceWalk * root * random.normal();
@@ -85,8 +90,8 @@ std::vector<WheelReading> read_wheels(const std::vector<Moment>& drive,
     r.right_angle_rad = value_at(wheels.right, seen) + m.sigma_angle_rad * right.next(now);
     const Moment then = moment_at(drive, seen - of(s, "steering0.latency"));
     const double grown = 1.0 + of(s, "steering0.understeer") * then.speed * then.speed;
-    const double angle =
-        std::atan((1.0 + of(s, "steering0.wheelbase")) * std::tan(then.steering)) * grown;
+    const double curve = (1.0 + of(s, "steering0.wheelbase")) * std::tan(then.steering);
+    const double angle = std::atan(kept_of_turn(s) * curve) * grown;
     r.steering_rad = angle * (1.0 + of(s, "steering0.ratio")) + of(s, "steering0.offset") +
                      of(s, "outside.steering_by_speed") * then.speed +
                      o.steering_sigma_rad * steering.next(now);
@@ -95,6 +100,25 @@ std::vector<WheelReading> read_wheels(const std::vector<Moment>& drive,
     readings.push_back(r);
   }
   return readings;
+}
+
+// Directions of the axes of an IMU in the vehicle frame.
+struct TiltedAxes {
+  std::array<double, 3> front, left, up;
+};
+
+// Rolled about the front axis (right side down), then lifted at its front.
+TiltedAxes tilted_axes(double roll, double pitch) {
+  const auto lifted = [&](double x, double y, double z) {
+    return std::array<double, 3>{x * std::cos(pitch) - z * std::sin(pitch), y,
+                                 x * std::sin(pitch) + z * std::cos(pitch)};
+  };
+  return {lifted(1.0, 0.0, 0.0), lifted(0.0, std::cos(roll), std::sin(roll)),
+          lifted(0.0, -std::sin(roll), std::cos(roll))};
+}
+
+double along(const std::array<double, 3>& axis, const std::array<double, 3>& vector) {
+  return axis[0] * vector[0] + axis[1] * vector[1] + axis[2] * vector[2];
 }
 
 std::vector<ImuReading> read_imu(const std::vector<Moment>& drive,
@@ -111,13 +135,23 @@ std::vector<ImuReading> read_imu(const std::vector<Moment>& drive,
     const double bias = of(s, "imu0.gyro_bias") + of(s, "outside.gyro_bias_by_column") * acting;
     ImuReading r;
     r.t_ns = stamp(0.01 * k, of(s, "clock.drift"));
-    r.angular_velocity_rad_s = {0.002 * random.normal(), 0.002 * random.normal(),
-                                now.yaw_rate * (1.0 + scale) + bias +
+    const TiltedAxes axes = tilted_axes(of(s, "imu0.tilt_roll"), of(s, "imu0.tilt_pitch"));
+    // In a left bend the left side hangs down.
+    const double roll = now.yaw_rate > 0.0 ? -bank_of(s) : bank_of(s);
+    const double turn = now.yaw_rate * (1.0 + scale);
+    const std::array<double, 3> rate{0.0, turn * std::sin(roll), turn * std::cos(roll)};
+    const double aside = now.speed * now.yaw_rate;
+    const std::array<double, 3> force{now.acceleration,
+                                      aside * std::cos(roll) + 9.81 * std::sin(roll),
+                                      9.81 * std::cos(roll) - aside * std::sin(roll)};
+    r.angular_velocity_rad_s = {along(axes.front, rate) + 0.002 * random.normal(),
+                                along(axes.left, rate) + 0.002 * random.normal(),
+                                along(axes.up, rate) + bias +
                                     of(s, "outside.gyro_warming") * (0.01 * k) +
                                     0.002 * gyro.next(now)};
-    r.specific_force_m_s2 = {now.acceleration + 0.03 * random.normal(),
-                             now.speed * now.yaw_rate + 0.03 * random.normal(),
-                             9.81 + 0.03 * random.normal()};
+    r.specific_force_m_s2 = {along(axes.front, force) + 0.03 * random.normal(),
+                             along(axes.left, force) + 0.03 * random.normal(),
+                             along(axes.up, force) + 0.03 * random.normal()};
     readings.push_back(r);
   }
   return readings;
@@ -203,10 +237,13 @@ const std::vector<EffectRange>& practical_ranges() {
       {"imu0.gyro_bias", 0.00035, 0.005},
       {"imu0.gyro_scale", 0.005, 0.02},
       {"imu0.latency", 0.005, 0.05},
+      {"imu0.tilt_roll", 0.005, 0.1},
+      {"imu0.tilt_pitch", 0.005, 0.1},
       {"clock.drift", 1e-5, 1e-4},
       {"cam.latency", 0.005, 0.08},
       {"cam.rotation", 0.0017, 0.017},
       {"cam.position", 0.01, 0.10},
+      {"ground.bank", 0.004, 0.094, true},  // 5 to 25 degrees
       {"map.scale", 0.003, 0.02},
       {"map.bend", 5e-5, 3e-4},
       {"wheels0.outliers", 0.01, 0.1, true},

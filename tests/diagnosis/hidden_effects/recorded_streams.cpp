@@ -18,8 +18,10 @@ MotionStreams streams_of(const Recording& recording) {
     streams.wheels.push_back({seconds(w.t_ns), w.left_angle_rad, w.right_angle_rad});
     streams.steering.push_back({seconds(w.t_ns), *w.steering_rad});
   }
-  for (const auto& g : recording.imu)
+  for (const auto& g : recording.imu) {
     streams.gyro.push_back({seconds(g.t_ns), g.angular_velocity_rad_s.z()});
+    streams.imu.push_back({seconds(g.t_ns), g.angular_velocity_rad_s, g.specific_force_m_s2});
+  }
   return streams;
 }
 

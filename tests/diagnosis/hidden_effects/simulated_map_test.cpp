@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/random.hpp"
@@ -30,6 +31,20 @@ TEST(SimulatedMap, AScaleOrBendOfTheMapBehindTheReferencePosesIsFoundWithItsSize
     EXPECT_NEAR(cause.size, size, 4.0 * sigma_of(cause));
     EXPECT_GT(std::abs(size), 5.0 * sigma_of(cause));
     EXPECT_GT(cause.gain.total, 0.0);
+  }
+}
+
+// The place has a hinge: its slope turns the car as well, and the reference says so.
+TEST(SimulatedMap, ATiltedImuIsFoundOnAnEdgeOfTheGround) {
+  const Diagnosis found =
+      simulated_and_diagnosed({{"imu0.tilt_roll", 0.06}, {"imu0.tilt_pitch", -0.04}}, 5);
+  SCOPED_TRACE(told(found));
+  ASSERT_EQ(found.causes.size(), 2U);
+  EXPECT_TRUE(found.unknown.empty());
+  for (const FoundCause& cause : found.causes) {
+    const double size = cause.effect == "imu0.tilt_roll" ? 0.06 : -0.04;
+    EXPECT_TRUE(cause.effect.starts_with("imu0.tilt_")) << cause.effect;
+    EXPECT_NEAR(cause.size, size, std::max(4.0 * sigma_of(cause), 1e-3));
   }
 }
 

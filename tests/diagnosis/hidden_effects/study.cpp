@@ -275,7 +275,7 @@ void study_correlated(std::size_t drives, std::uint64_t seed, int threads) {
   std::vector<std::string> effects;
   for (std::size_t i = 0; i < drives; ++i) {
     Random random(seed, "study correlated", i);
-    const EffectRange& range = ranges[random.below(25)];
+    const EffectRange& range = ranges[random.below(28)];
     jobs.push_back(job_of(range, seed, i));
     jobs.back().hidden.secret["poses.correlation"] = random.uniform(0.5, 0.95);
     effects.push_back(range.name);
