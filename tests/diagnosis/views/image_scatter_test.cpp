@@ -38,7 +38,8 @@ std::vector<double> ratios(double share, double as_before, int images = 4000, do
   for (std::size_t o = 0; o < data.bundle.observations.size(); ++o) {
     if (o % (2 * kScatterViews) == 0)
       common = as_before * common + std::sqrt(1.0 - as_before * as_before) * random.normal();
-    columns << 0.0, 1.0, 1.0, 30.0, 0.1, 2.0, 3.0;
+    columns.setZero();
+    columns.head<7>() << 0.0, 1.0, 1.0, 30.0, 0.1, 2.0, 3.0;
     Eigen::RowVectorXd left(1 + kScatterDraws);
     for (double& x : left) x = random.normal();
     if (data.bundle.observations[o].camera == 0)
