@@ -13,9 +13,9 @@ namespace roadbook {
 namespace {
 
 constexpr int kDraws = 64;  // one bit of a random word each
-constexpr int kHalf = kDraws / 2;
+constexpr int kHalfDraws = kDraws / 2;
 using Panel = BlockCholesky::Panel;
-using Signs = Eigen::Matrix<double, 1, kHalf>;
+using Signs = Eigen::Matrix<double, 1, kHalfDraws>;
 
 // Some draws that one thread makes: half the columns of a chunk.
 struct Draws {
@@ -25,8 +25,8 @@ struct Draws {
 
 Signs signs_of(std::uint64_t word, Draws draws) {
   Signs signs;
-  for (int k = 0; k < kHalf; ++k)
-    signs(k) = (word >> (kHalf * draws.half + k) & 1U) != 0 ? 1.0 : -1.0;
+  for (int k = 0; k < kHalfDraws; ++k)
+    signs(k) = (word >> (kHalfDraws * draws.half + k) & 1U) != 0 ? 1.0 : -1.0;
   return signs;
 }
 
@@ -62,10 +62,14 @@ struct Scores {
   Scores(std::size_t variables, Eigen::Index free)
       : poses(Panel::Zero(row_of(variables), kDraws)), scales(Panel::Zero(free, kDraws)) {}
   auto pose(int variable, Draws draws) {
-    return poses.block<6, kHalf>(row_of(at(variable)), kHalf * draws.half);
+    return poses.block<6, kHalfDraws>(row_of(at(variable)), kHalfDraws * draws.half);
   }
-  auto scale(int row, Draws draws) { return scales.block<1, kHalf>(row, kHalf * draws.half); }
-  void add(const MotionScore& motion, const Eigen::Matrix<double, 13, kHalf>& sum, Draws draws) {
+  auto scale(int row, Draws draws) {
+    return scales.block<1, kHalfDraws>(row, kHalfDraws * draws.half);
+  }
+  void add(const MotionScore& motion,
+           const Eigen::Matrix<double, 13, kHalfDraws>& sum,
+           Draws draws) {
     if (motion.from >= 0) pose(motion.from, draws) += sum.topRows<6>();
     if (motion.to >= 0) pose(motion.to, draws) += sum.middleRows<6>(6);
     if (motion.scale >= 0) scale(motion.scale, draws) += sum.row(12);
@@ -91,7 +95,7 @@ void draw_points(const ClusterData& data,
         signs_of(stream(data, "landmark", corner < 0 ? p : at(corner), draws)(), draws);
     const double grown = 1.0 / std::max(0.1, 1.0 - data.leverage[p]);
     Eigen::VectorXd own(2 * static_cast<Eigen::Index>(point.terms.size()));
-    residuals.resize(own.size(), kHalf);
+    residuals.resize(own.size(), kHalfDraws);
     for (std::size_t t = 0; t < point.terms.size(); ++t) {
       const PointTerms::Term& term = point.terms[t];
       const auto row = static_cast<Eigen::Index>(2 * t);
@@ -105,7 +109,7 @@ void draw_points(const ClusterData& data,
       if (term.variable < 0) continue;
       const auto row = static_cast<Eigen::Index>(2 * t);
       const Vector6d score = grown * term.J_pose.transpose() * of_landmark.middleRows<2>(row);
-      const Eigen::Matrix<double, 6, kHalf, Eigen::RowMajor> of_place =
+      const Eigen::Matrix<double, 6, kHalfDraws, Eigen::RowMajor> of_place =
           term.J_pose.transpose().lazyProduct(of_places.middleRows<2>(row));
       parts.landmarks.pose(term.variable, draws) += score.lazyProduct(track);
       parts.places.pose(term.variable, draws) += of_place;
@@ -122,7 +126,7 @@ void draw_motions(const ClusterData& data,
     const MotionConstraint& motion = data.problem.motions[i];
     const MotionScore score = motion_score(data, motion);
     Random random = stream(data, "motion", i, draws);
-    Panel noise(6, kHalf);
+    Panel noise(6, kHalfDraws);
     for (int row = 0; row < 6; ++row) noise.row(row) = signs_of(random(), draws);
     parts.landmarks.add(score, score.root.lazyProduct(noise), draws);
     parts.places.add(score, score.score.lazyProduct(places.of(motion.to, kWheels)), draws);
@@ -141,7 +145,7 @@ void draw_priors(const ClusterData& data, Draws draws, Scores& scores) {
     const int v = data.layout.variable[at(prior.pose)];
     if (v < 0) continue;
     Random random = stream(data, "prior", i, draws);
-    Panel noise(6, kHalf);
+    Panel noise(6, kHalfDraws);
     for (int row = 0; row < 6; ++row) noise.row(row) = signs_of(random(), draws);
     const MotionResidual e = motion_residual(
         Eigen::Isometry3d::Identity(), data.state.poses[at(prior.pose)], prior.T_map_vehicle, 1.0);
