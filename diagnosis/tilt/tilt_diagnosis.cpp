@@ -44,6 +44,21 @@ double known_size(const EffectSizes& known, const std::string& effect) {
   return found == known.end() ? 0.0 : found->second;
 }
 
+// Takes tilts away whose held-out gain is not significant. The poses of a map, for one, have errors
+// of attitude that part of a drive shows and part does not.
+void keep_confirmed(Diagnosis& found) {
+  std::erase_if(found.causes, [&](const FoundCause& c) {
+    if (c.gain.low > 0.0) return false;
+    found.unexplained.push_back("resembles " + c.effect + " = " + fixed(c.size, 4) + " rad" +
+                                (c.session.empty() ? "" : " in " + c.session) +
+                                ", but its held-out gain is not significant");
+    if (!c.session.empty()) return true;
+    found.extended.erase(c.effect);
+    std::erase(found.looked_for, c.effect);  // neither found nor fine
+    return true;
+  });
+}
+
 void remove_tilt(const EffectSizes& sizes, MotionStreams& streams) {
   const auto off = imu_imperfections(sizes);
   roadbook::remove_tilt(off.tilt_roll, off.tilt_pitch, streams);
@@ -81,10 +96,12 @@ Diagnosis diagnose_tilt(std::span<const TiltedDrive> drives, const DiagnosisOpti
   Diagnosis all;
   if (sessions.empty()) return all;
   Diagnosis found = diagnose_together(sessions, options.search);
+  keep_confirmed(found);
   for (const TiltedDrive& drive : drives) remove_tilt(tilt_in(found, drive.name), *drive.streams);
   all.causes = std::move(found.causes);
   all.looked_for = std::move(found.looked_for);
   all.not_observable = std::move(found.not_observable);
+  all.unexplained = std::move(found.unexplained);
   for (const auto& [effect, size] : found.extended)
     all.extended[effect] = size + known_size(options.known, effect);
   all.fit_gain = found.fit_gain;

@@ -73,8 +73,8 @@ std::optional<std::string> new_camera_values(const Diagnosis& d,
   const std::string_view key =
       double_sphere && found->key == kDistortion ? kIntrinsics : found->key;
   EffectSizes own;
-  for (const FoundCause& c : d.causes)
-    if (c.session.empty() && c.effect.starts_with(name + ".")) own[c.effect] = c.size;
+  for (const auto& [known, size] : d.extended)  // with what a given model says
+    if (known.starts_with(name + ".")) own[known] = size;
   const MountedCamera now = apply_camera_effects(*camera, own);
   return "set `" + std::string(key) + "` of " + name + " to " + row_text(values_of(now, key)) +
          " (stated: " + row_text(values_of(*camera, key)) + ")";

@@ -74,8 +74,11 @@ TEST(Advice, SaysTheNewValuesOfACamera) {
                                                                   {"cam2.distortion2", 0.001},
                                                                   {"cam2.focal", 0.01},
                                                                   {"cam2.height", -0.05},
-                                                                  {"cam.height", 0.01}})
+                                                                  {"cam.height", 0.01}}) {
     d.causes.push_back(cause(effect, size, 0.001));
+    d.extended[effect] = size;
+  }
+  d.causes.front().size = 1.5;  // the other half pixel was known before
   const auto advice = advice_of(d, vehicle);
   const auto action_of = [&](const std::string& effect) {
     const auto found = std::find_if(advice.begin(), advice.end(),
