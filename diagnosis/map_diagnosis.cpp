@@ -37,7 +37,8 @@ void add_motion(MotionStreams streams,
     parts.back().notes.insert(parts.back().notes.begin(), prepared.notes.begin(),
                               prepared.notes.end());
   } catch (const BadInput& bad) {
-    parts.emplace_back().notes.push_back(std::string("motion not diagnosed: ") + bad.what());
+    add_findings(tilt, parts.emplace_back());
+    parts.back().notes.push_back(std::string("motion not diagnosed: ") + bad.what());
   }
 }
 

@@ -5,6 +5,8 @@
 #include "base/error.hpp"
 #include "diagnosis/inference/search.hpp"
 #include "diagnosis/streams/drive_streams.hpp"
+#include "diagnosis/tilt/tilt_diagnosis.hpp"
+#include "sensors/imu_imperfections.hpp"
 
 namespace roadbook {
 namespace {
@@ -55,6 +57,8 @@ std::optional<double> MapMotion::wants(const ViewProblem& views,
   if (has_reference())
     for (const auto& [name, size] : found)
       if (!is_camera_effect(name) && !name.starts_with("map.")) q.options.known[name] += size;
+  const ImuImperfections<double> imu = imu_imperfections(q.options.known);
+  remove_tilt(imu.tilt_roll, imu.tilt_pitch, q.streams);
   try {
     const PreparedMotion prepared = prepare_motion(q.streams, drive_.folder().string(), q.options);
     double evidence = 0.0;

@@ -16,8 +16,7 @@ namespace roadbook {
 /// axis. position, lateral, height: camera moved along the vehicle's x, y and z axis [m], positive
 /// forward, to the left and up. `rig.X` then turns all cameras as one body about the axes of the
 /// vehicle by R_z(-rotation) R_y(-pitch) R_x(roll): to the right, up, clockwise seen from behind.
-/// Latency, shutter and brightness concern the image, not the camera,
-/// and change nothing here.
+/// Latency, shutter and brightness concern the image, not the camera, and change nothing here.
 [[nodiscard]] MountedCamera apply_camera_effects(const MountedCamera& nominal,
                                                  const EffectSizes& sizes);
 

@@ -22,17 +22,20 @@ EffectSizes tilt_in(const Diagnosis& found, const std::string& drive) {
   return sizes;
 }
 
-// Without turns gravity alone shows a tilt. Beyond the bias of any accelerometer of a car it is
-// said, but not named: one number has no other that agrees with it.
-std::vector<std::string> notes_of_gravity(const TiltProblem& problem, const Diagnosis& found) {
+// A tilt that turns do not confirm may show in gravity alone. Beyond the bias of any accelerometer
+// of a car it is said, but not named: one number has no other that agrees with it.
+std::vector<std::string> notes_of_gravity(const TiltProblem& problem,
+                                          const Diagnosis& found,
+                                          const std::vector<std::string>& without) {
   constexpr double kBeyondBias = 0.1;  // [rad], 1 m/s^2
   std::vector<std::string> notes;
   const auto tilt = problem.tilt_by_gravity();
   if (!tilt) return notes;
   const auto add = [&](const std::string& effect, double size) {
-    if (std::abs(size) < kBeyondBias || shows(found, effect)) return;
-    notes.push_back("gravity resembles " + effect + " = " + fixed(size, 2) +
-                    " rad, but without turns a bias of the accelerometer is not separable from it");
+    if (std::abs(size) < kBeyondBias || shows(found, effect) || holds(without, effect)) return;
+    notes.push_back(
+        "gravity resembles " + effect + " = " + fixed(size, 2) +
+        " rad; turns do not confirm it, and a bias of the accelerometer looks the same");
   };
   add("imu0.tilt_roll", (*tilt)[0]);
   add("imu0.tilt_pitch", (*tilt)[1]);
@@ -106,7 +109,8 @@ Diagnosis diagnose_tilt(std::span<const TiltedDrive> drives, const DiagnosisOpti
     all.extended[effect] = size + known_size(options.known, effect);
   all.fit_gain = found.fit_gain;
   for (const auto& problem : problems)
-    for (std::string& note : notes_of_gravity(*problem, all)) all.notes.push_back(std::move(note));
+    for (std::string& note : notes_of_gravity(*problem, all, options.library.without))
+      all.notes.push_back(std::move(note));
   return all;
 }
 

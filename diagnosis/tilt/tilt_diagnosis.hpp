@@ -23,8 +23,8 @@ void remove_tilt(double roll_rad, double pitch_rad, MotionStreams& streams);
 /// removes it from their streams, so that motion is diagnosed with a level gyro: its z axis reads
 /// too small by the cosine of the tilt. Known sizes (`options.known`) are removed first; the result
 /// is the difference from them, its extended model has the whole sizes. Empty where no drive has an
-/// IMU of three axes, or where all axes but one are constant. The road is no fault of a sensor:
-/// lack of fit is not reported.
+/// IMU of three axes, or where all axes but one are constant. One drive that shows a tilt speaks
+/// for the vehicle. The road is no fault of a sensor: lack of fit is not reported.
 [[nodiscard]] Diagnosis diagnose_tilt(std::span<const TiltedDrive> drives,
                                       const DiagnosisOptions& options);
 

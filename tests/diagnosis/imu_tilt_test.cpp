@@ -129,6 +129,15 @@ TEST(ImuTilt, OnAStraightDriveIsNotObservableAndALargeOneIsNoted) {
   EXPECT_EQ(notes_of(0.3).find("tilt_roll"), std::string::npos);
 }
 
+// The note is not for a tilt that the user left out.
+TEST(ImuTilt, ThatIsLeftOutIsNotNotedByGravity) {
+  DiagnosisOptions options;
+  options.library.without = {kPitch};
+  const Diagnosis d = diagnose(tilted({{kPitch, 0.3}}, 7), "drive", options);
+  for (const std::string& note : d.notes)
+    EXPECT_EQ(note.find("gravity"), std::string::npos) << note;
+}
+
 TEST(ImuTilt, IsNotLookedForWhereOneAxisAloneIsMeasured) {
   MotionStreams streams = tilted({{kRoll, 0.1}}, 8);
   for (ImuSample& s : streams.imu) {

@@ -21,7 +21,9 @@ EffectSizes correctable_model(const Diagnosis& d) {
   for (const FoundCause& c : d.causes)
     for (const auto& [ground, cameras] : kAlike) {
       const auto instead = c.instead.find(cameras);
-      if (c.effect != ground || instead == c.instead.end() || !model.contains(ground)) continue;
+      if (!c.session.empty() || c.effect != ground || instead == c.instead.end() ||
+          !model.contains(ground))
+        continue;
       constexpr double kNothingLeft = 1e-12;
       model[cameras] += instead->second;
       model[ground] -= c.size;  // a size that was known before stays

@@ -79,7 +79,7 @@ DiagnosisRun looked_into(const DiagnosisRequest& request,
                          const Drive& drive) {
   DiagnosisRun run{{}, drive.name(), drive.digest()};
   const MotionStreams streams = motion_streams(drive);
-  if (!streams.wheels.empty()) run.stated = StatedVehicle{streams.wheel_model, false, drive.rig()};
+  run.stated = StatedVehicle{streams.wheel_model, false, drive.rig()};
   DriveReadings readings = drive_readings(drive, streams.poses, options.known);
   if (request.map.empty()) {
     run.diagnosis = diagnose_streams(streams, readings, request.drive.string(), options);

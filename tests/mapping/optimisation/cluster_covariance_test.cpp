@@ -50,6 +50,7 @@ TEST(ClusterCovariance, CoversErrorsThatTheViewsOfALandmarkShare) {
     const auto by_clusters =
         cluster_covariance(s.problem, result.inlier, one_piece(s.problem), options);
     ASSERT_TRUE(by_clusters.usable) << by_clusters.message;
+    for (const BundlePose& pose : s.problem.poses) EXPECT_FALSE(pose.fixed);
     EXPECT_EQ(by_clusters.poses[0], Matrix6d::Zero());
     for (const std::size_t i : {s.poses.size() / 4, s.poses.size() / 2}) {
       const Vector6d e = se3_log(s.problem.poses[i].T_map_vehicle.inverse() * s.poses[i]);
