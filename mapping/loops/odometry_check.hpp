@@ -18,7 +18,11 @@ namespace roadbook {
 /// of one number in `stretch` are judged together by their median: all of them contradict beyond
 /// the 0.99 quantile of chi-square with 3 degrees of freedom.
 ///
-/// Edges across a gap are not judged. Linear in keyframes and edges; deterministic.
+/// After many passes over a place the odometry's height has drifted. Loops that it contradicts are
+/// judged again by the ways over loops that it clearly agrees with, which are shorter: from pass
+/// to pass. Storeys that only false loops join have no such way.
+///
+/// Edges across a gap are not judged. Near linear in keyframes and edges; deterministic.
 [[nodiscard]] std::vector<std::uint8_t> contradict_odometry(
     const std::vector<VoKeyframe>& keyframes,
     const std::vector<LoopEdge>& edges,

@@ -7,7 +7,9 @@
 
 #include "mapping/landmark_descriptor.hpp"
 #include "mapping/lone_corners.hpp"
+#include "mapping/loops/graph_loops.hpp"
 #include "mapping/optimisation/graph_relaxation.hpp"
+#include "mapping/optimisation/pose_graph_solver.hpp"
 #include "mapping/pipeline/track_agreement.hpp"
 #include "mapping/travelled.hpp"
 
@@ -15,6 +17,12 @@ namespace roadbook {
 namespace {
 
 constexpr double kBundleTolerance = 1e-4;
+// Times the gate of loops in the pose graph: poses between loops are less sure than those at them.
+constexpr double kGateOutsideGraph = 4.0;
+
+RelativePose motion_of(const LoopEdge& edge) {
+  return {edge.from, edge.to, edge.T_from_to, edge.information};
+}
 
 std::vector<Eigen::Isometry3d> odometry_poses(const VoResult& odometry) {
   std::vector<Eigen::Isometry3d> poses;
@@ -197,22 +205,26 @@ Relaxed relax_poses(const MappingInput& input,
           {static_cast<int>(k) - 1, static_cast<int>(k),
            keyframes[k - 1].T_odom_vehicle.inverse() * keyframes[k].T_odom_vehicle,
            keyframes[k].information});
-  std::vector<std::size_t> in_graph;
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (!loops[i].edge.accepted) continue;
-    in_graph.push_back(i);
-    graph.loops.push_back(
-        {loops[i].edge.from, loops[i].edge.to, loops[i].edge.T_from_to, loops[i].edge.information});
-  }
+  const std::vector<std::size_t> in_graph = loops_of_graph(loops, segments_of(keyframes));
+  for (const std::size_t i : in_graph) graph.loops.push_back(motion_of(loops[i].edge));
   const auto result = relax(graph, options.graph, progress);
   if (!result.usable)
     throw Refused("error: pose graph: got " + result.message + ", want a solution");
+  std::vector<std::uint8_t> agrees(loops.size(), 0);
+  const GraphState state{result.T_map_vehicle, {}, {}};
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    agrees[i] = edge_chi2(motion_of(loops[i].edge), state) <=
+                kGateOutsideGraph * options.graph.max_loop_chi2;
+    loops[i].edge.weight = loops[i].edge.accepted && agrees[i] != 0 ? 1.0 : 0.0;
+  }
   for (std::size_t i = 0; i < in_graph.size(); ++i) {
-    LoopEdge& edge = loops[in_graph[i]].edge;
-    edge.weight = result.loop_weights[i];
-    if (result.loop_accepted[i]) continue;
-    edge.accepted = false;
-    edge.reason = "contradicts odometry and the other loops";
+    loops[in_graph[i]].edge.weight = result.loop_weights[i];
+    agrees[in_graph[i]] = result.loop_accepted[i];
+  }
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (!loops[i].edge.accepted || agrees[i] != 0) continue;
+    loops[i].edge.accepted = false;
+    loops[i].edge.reason = "contradicts odometry and the other loops";
   }
   return {result.T_map_vehicle, result.component, result.components};
 }

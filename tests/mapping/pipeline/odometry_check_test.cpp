@@ -91,5 +91,41 @@ TEST(OdometryCheck, LoopsAcrossAGapAreNotJudged) {
   EXPECT_EQ(accepted_of(keyframes, {}), static_cast<int>(loops_between_laps().size()));
 }
 
+// Twenty laps whose odometry leans over by 0.03 rad a lap: each lap agrees with the last one, and
+// with the first one over those between. The way of all laps at once has its errors repeat.
+TEST(OdometryCheck, LoopsToTheFirstOfManyLapsStay) {
+  constexpr int kLaps = 20;
+  constexpr double kLean = 1e-4;  // of each motion [rad]
+  std::vector<VoKeyframe> keyframes;
+  for (int lap = 0; lap < kLaps; ++lap) {
+    const auto two = two_laps(0.0, 100 + static_cast<std::uint64_t>(lap));
+    for (std::size_t k = 0; k < kLap; ++k) {
+      VoKeyframe next = two[k + kLap];
+      if (!keyframes.empty())
+        next.T_odom_vehicle = keyframes.back().T_odom_vehicle *
+                              two[k + kLap - 1].T_odom_vehicle.inverse() * next.T_odom_vehicle;
+      keyframes.push_back(next);
+    }
+  }
+  for (int k = 0; k < kLaps * kLap; ++k) {
+    Eigen::Isometry3d& T = keyframes[static_cast<std::size_t>(k)].T_odom_vehicle;
+    T = Eigen::AngleAxisd(kLean * k, Eigen::Vector3d::UnitX()) * T;
+  }
+  std::vector<LoopEdge> edges;
+  std::vector<int> stretch;
+  for (int lap = 1; lap < kLaps; ++lap)
+    for (const int to_lap : {0, lap - 1})
+      for (int k = 0; k < kLap; k += 10) {
+        LoopEdge edge;
+        edge.from = to_lap * kLap + k;
+        edge.to = lap * kLap + k;
+        edge.information = 1e4 * Matrix6d::Identity();
+        edges.push_back(edge);
+        stretch.push_back(2 * lap + (to_lap == 0 ? 0 : 1));
+      }
+  const auto contradicts = contradict_odometry(keyframes, edges, stretch);
+  EXPECT_EQ(std::count(contradicts.begin(), contradicts.end(), 1), 0);
+}
+
 }  // namespace
 }  // namespace roadbook

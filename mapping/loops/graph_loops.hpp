@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "mapping/loops/loop_closure.hpp"
+
+namespace roadbook {
+
+/// Indices of the accepted loops that enter the pose graph, ascending.
+///
+/// All of them, up to 2,000. Of more, one from four successive keyframes to each segment
+/// (`segment` of each keyframe, as of `segments_of`): the one whose earlier keyframe is the latest.
+/// After many passes over a place, loops join every pass with every other one, and the factor of
+/// the graph's normal equations fills up; loops from pass to pass determine the poses nearly as
+/// well (docs/results/speed.md). The matches of all loops serve the bundle adjustment.
+[[nodiscard]] std::vector<std::size_t> loops_of_graph(const std::vector<LoopClosure>& loops,
+                                                      const std::vector<int>& segment);
+
+}  // namespace roadbook
