@@ -88,7 +88,7 @@ std::int64_t Drive::image_stamp_ns(std::size_t frame, std::size_t camera) const 
 }
 
 std::int64_t Drive::written_stamp_ns(std::size_t frame, std::size_t camera) const {
-  return image_stamp_ns(frame, camera) - offset_ns(rig().cameras.at(camera).time_offset_s);
+  return image_stamp_ns(frame, camera) - impl_->content.images.at(camera).shifted_ns;
 }
 
 bool Drive::has_image(std::size_t frame, std::size_t camera) const {

@@ -122,6 +122,25 @@ FrameIndex index_frames(const std::vector<ImageStream>& images, double tolerance
   return frames;
 }
 
+std::vector<std::int64_t> join_triggered_images(std::vector<ImageStream>& images,
+                                                double tolerance_s) {
+  std::vector<std::int64_t> after_ns(images.size(), 0);
+  for (std::size_t c = 1; c < images.size(); ++c)
+    after_ns[c] = images[c].shifted_ns - images.front().shifted_ns;
+  if (std::all_of(after_ns.begin(), after_ns.end(), [](std::int64_t t) { return t == 0; }))
+    return after_ns;
+  const auto shift_all = [&](std::int64_t sign) {
+    for (std::size_t c = 0; c < images.size(); ++c) images[c].shift(sign * after_ns[c]);
+  };
+  constexpr std::size_t kPercent = 90;  // at the ends a pairing may lose an image
+  const std::size_t instants = index_frames(images, tolerance_s).stamps_ns.size();
+  shift_all(-1);
+  if (100 * index_frames(images, tolerance_s).stamps_ns.size() < kPercent * instants)
+    return after_ns;
+  shift_all(1);
+  return std::vector<std::int64_t>(images.size(), 0);
+}
+
 void warn_of_unpaired_cameras(const std::vector<ImageStream>& images,
                               double tolerance_s,
                               ProblemList& problems) {

@@ -55,6 +55,7 @@ class Loader {
 
   void run() {
     load_cameras();
+    join_triggered_cameras();
     check_against_camchain();
     load_segmentations();
     load_wheels();
@@ -104,6 +105,13 @@ class Loader {
                       "at most " + std::to_string(FrameIndex::kMaxCameras));
   }
 
+  void join_triggered_cameras() {
+    const std::vector<std::int64_t> after_ns =
+        join_triggered_images(content_.images, options_.stamp_tolerance_s);
+    for (std::size_t c = 0; c < after_ns.size(); ++c)
+      content_.rig.cameras[c].exposed_after_s = 1e-9 * static_cast<double>(after_ns[c]);
+  }
+
   // A file in the sensors' folder or, where the sensors are in mav0/, in its parent; the digest
   // covers the file.
   std::optional<fs::path> beside_sensors(const char* name) {
@@ -138,9 +146,9 @@ class Loader {
       auto stream = load_image_stream(folder, {camera->camera.width, camera->camera.height}, limits,
                                       options_, problems_);
       content_.streams.push_back(stream.summary);
-      stream.shift(offset_ns(camera->time_offset_s));
-      content_.segmentations[static_cast<std::size_t>(camera - cameras.begin())] =
-          std::move(stream);
+      const auto which = static_cast<std::size_t>(camera - cameras.begin());
+      stream.shift(content_.images[which].shifted_ns);
+      content_.segmentations[which] = std::move(stream);
       remember(folder);
     }
   }

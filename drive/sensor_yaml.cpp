@@ -63,6 +63,7 @@ std::optional<CameraFile> read_camera_yaml(const std::filesystem::path& file,
   read_kalibr_lens(*yaml, "distortion_coefficients", result.camera.camera);
   yaml->read("max_angle", result.camera.camera.max_angle_rad, {1e-3, std::numbers::pi});
   yaml->read("time_offset", result.camera.time_offset_s, {-10.0, 10.0});
+  yaml->read("rolling_shutter", result.camera.rolling_shutter_s, {-0.2, 0.2});
   if (!close_yaml(*yaml, problems)) return std::nullopt;
   check_camera_sizes(file.string(), result.camera, problems);
   return result;

@@ -76,6 +76,7 @@ std::string camera_yaml_text(const MountedCamera& camera, const SensorInfo& info
   if (camera.camera.max_angle_rad < Camera{}.max_angle_rad)
     out += line("max_angle", camera.camera.max_angle_rad);
   if (camera.time_offset_s != 0.0) out += line("time_offset", camera.time_offset_s);
+  if (camera.rolling_shutter_s != 0.0) out += line("rolling_shutter", camera.rolling_shutter_s);
   return out;
 }
 

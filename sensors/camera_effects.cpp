@@ -29,8 +29,14 @@ MountedCamera apply_camera_effects(const MountedCamera& nominal, const EffectSiz
        Eigen::AngleAxisd(-effect_size(sizes, "rig", "pitch"), Eigen::Vector3d::UnitY()) *
        Eigen::AngleAxisd(effect_size(sizes, "rig", "roll"), Eigen::Vector3d::UnitX()))
           .toRotationMatrix();
-  return {real.name, real.camera, Eigen::Isometry3d(turned_rig) * real.T_vehicle_camera,
-          real.time_offset_s};
+  // A latency of all cameras is one of the instants.
+  const double own_latency = size("latency") - effect_size(sizes, "cam", "latency");
+  return {real.name,
+          real.camera,
+          Eigen::Isometry3d(turned_rig) * real.T_vehicle_camera,
+          real.time_offset_s,
+          nominal.exposed_after_s - own_latency,
+          nominal.rolling_shutter_s + size("rolling_shutter")};
 }
 
 }  // namespace roadbook

@@ -16,7 +16,8 @@ namespace roadbook {
 /// axis. position, lateral, height: camera moved along the vehicle's x, y and z axis [m], positive
 /// forward, to the left and up. `rig.X` then turns all cameras as one body about the axes of the
 /// vehicle by R_z(-rotation) R_y(-pitch) R_x(roll): to the right, up, clockwise seen from behind.
-/// Latency, shutter and brightness concern the image, not the camera, and change nothing here.
+/// rolling_shutter: added to that of the camera. latency of one camera (`camN.latency`): taken off
+/// `exposed_after_s`. Brightness and a latency of all cameras change nothing here.
 [[nodiscard]] MountedCamera apply_camera_effects(const MountedCamera& nominal,
                                                  const EffectSizes& sizes);
 

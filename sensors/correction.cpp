@@ -14,9 +14,10 @@ namespace {
 
 constexpr double kWindowS = 0.4;
 
-constexpr std::array kRigEffects{"focal",      "aspect",      "centre",   "centre_x", "centre_y",
-                                 "distortion", "distortion2", "rotation", "pitch",    "roll",
-                                 "position",   "lateral",     "height"};
+constexpr std::array kRigEffects{"focal",    "aspect",     "centre",         "centre_x",
+                                 "centre_y", "distortion", "distortion2",    "rotation",
+                                 "pitch",    "roll",       "position",       "lateral",
+                                 "height",   "latency",    "rolling_shutter"};
 constexpr std::array kNoise{"outliers", "variance(speed)", "variance(turn)", "correlation"};
 constexpr std::array kStreamEffects{"wheels0.left_radius",
                                     "wheels0.right_radius",

@@ -16,9 +16,13 @@ struct MountedCamera {
   Camera camera;
   Eigen::Isometry3d T_vehicle_camera = Eigen::Isometry3d::Identity();
   double time_offset_s = 0.0;  ///< to add to this camera's stamps
+  /// Of the middle row's exposure, after the stamp of the instant. A drive sets it where cameras
+  /// whose images it pairs have different time offsets; a late camera has a negative one.
+  double exposed_after_s = 0.0;
+  double rolling_shutter_s = 0.0;  ///< from the first row to the last; the middle row has the stamp
 };
 
-/// All cameras of a vehicle; images of one instant carry the same stamp.
+/// All cameras of a vehicle.
 struct Rig {
   std::vector<MountedCamera> cameras;
 };

@@ -159,6 +159,13 @@ ViewData view_data(const Map& map,
   data.bundle.cameras = map.sessions[at(session)].rig.cameras;
   if (drive.rig().cameras.size() == data.bundle.cameras.size())
     data.bundle.cameras = drive.rig().cameras;
+  // The map's corners lie where they would have been at the stamps, by what it knew of exposures.
+  for (std::size_t c = 0; c < data.bundle.cameras.size(); ++c) {
+    MountedCamera& camera = data.bundle.cameras[c];
+    const MountedCamera& known = map.sessions[at(session)].rig.cameras[c];
+    camera.exposed_after_s -= known.exposed_after_s;
+    camera.rolling_shutter_s -= known.rolling_shutter_s;
+  }
   if (drive.wheel_model()) data.wheels = *drive.wheel_model();
   std::vector<int> pose_of(map.keyframes.size(), -1);
   add_poses(map, session, data, pose_of);

@@ -32,8 +32,9 @@ Eigen::Matrix2d reading_gain(const WheelModel& wheels,
 ViewTiming::ViewTiming(const ViewData& data, const EffectSizes& effects)
     : wheels_late_(effect_size(effects, "wheels0", "latency")), moments_(data.moments) {
   for (const MountedCamera& camera : data.bundle.cameras) {
-    shutter_.push_back(effect_size(effects, camera.name, "rolling_shutter"));
-    late_.push_back(effect_size(effects, camera.name, "latency"));
+    shutter_.push_back(camera.rolling_shutter_s +
+                       effect_size(effects, camera.name, "rolling_shutter"));
+    late_.push_back(effect_size(effects, camera.name, "latency") - camera.exposed_after_s);
   }
   constexpr double kLeastGain = 0.1;  // a locked axle hardly reads turns
   WheelImperfections<double> off = wheel_imperfections(effects);

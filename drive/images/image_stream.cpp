@@ -220,6 +220,7 @@ std::string ImageNames::at(std::int64_t t_ns) const {
 }
 
 void ImageStream::shift(std::int64_t by_ns) {
+  shifted_ns += by_ns;
   for (std::int64_t& t_ns : stamps_ns) t_ns += by_ns;
   for (RepeatedImages& run : repeats) {
     run.first_ns += by_ns;

@@ -58,6 +58,8 @@ struct ImageStream {
   std::vector<RepeatedImages> repeats;  ///< of five images and more
   std::optional<GreyRange> greys;       ///< of its 16-bit images; empty: it has none
 
+  std::int64_t shifted_ns = 0;  ///< what `shift` has added to the stamps of the table
+
   /// Moves the stamps of the images; the summary keeps those of the table.
   void shift(std::int64_t by_ns);
 };

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/format.hpp"
 #include "base/index.hpp"
+#include "vo/exposure_shift.hpp"
 #include "vo/planar_motion.hpp"
 
 namespace roadbook {
@@ -103,13 +104,15 @@ void LocaliserOptions::check() const {
 
 struct Localiser::State {
   const LandmarkIndex& index;
-  Rig rig;
+  Rig stated_rig;
+  Rig rig;  // the same, with cameras where they exposed the present frame
   LocaliserOptions options;
   std::optional<Relocaliser> relocaliser;  // made when it is needed for the first time
   std::optional<Eigen::Vector3d> start;    // where the vehicle is said to stand
   double start_heading_rad = 0.0;
   std::optional<std::int64_t> start_tried_ns;  // when it was tried for the first time
   std::optional<VehicleTrack> track;
+  std::optional<std::int64_t> last_frame_ns;
   std::optional<std::int64_t> last_try_ns;
   bool confirmed = false;
   // Sums over past frames, which fade: the factor on the covariance of a fix is their ratio.
@@ -118,7 +121,11 @@ struct Localiser::State {
   double before_noise_factor = 1.0;
 
   State(const LandmarkIndex& i, Rig r, const LocaliserOptions& o)
-      : index(i), rig(std::move(r)), options(o), before_noise_factor(o.fix.noise_factor) {
+      : index(i),
+        stated_rig(std::move(r)),
+        rig(stated_rig),
+        options(o),
+        before_noise_factor(o.fix.noise_factor) {
     options.check();
   }
 
@@ -127,6 +134,7 @@ struct Localiser::State {
     return *relocaliser;
   }
 
+  void place_cameras(const LocaliserFrame& frame, bool use_wheels);
   void predict(const LocaliserFrame& frame, bool use_wheels);
   [[nodiscard]] bool is_lost() const;
   bool try_fix(const FrameCorners& corners, LocalisedFrame& result);
@@ -140,6 +148,19 @@ struct Localiser::State {
   [[nodiscard]] bool agrees_with_start(const Eigen::Isometry3d& T_map_vehicle) const;
   void judge_tentative(bool has_fix);
 };
+
+// Late cameras saw the world from where the car was then, by its motion since the last frame.
+void Localiser::State::place_cameras(const LocaliserFrame& frame, bool use_wheels) {
+  const double dt = last_frame_ns ? seconds(*last_frame_ns, frame.t_ns) : 0.0;
+  last_frame_ns = frame.t_ns;
+  if (!exposes_beside_stamp(stated_rig)) return;
+  Vector6d twist = Vector6d::Zero();
+  if (use_wheels && dt > 0.0)
+    twist = se3_log(planar_transform(*frame.wheels)) / dt;
+  else if (track && track->velocity)
+    twist = *track->velocity;
+  rig = rig_at_exposure(stated_rig, twist);
+}
 
 // Moves the track to the time of the frame, by the wheels or with its velocity.
 void Localiser::State::predict(const LocaliserFrame& frame, bool use_wheels) {
@@ -366,9 +387,10 @@ LocalisedFrame Localiser::add(LocaliserFrame frame) {
   LocalisedFrame result;
   result.frame = frame.frame;
   result.t_ns = frame.t_ns;
-  const FrameCorners corners(s.rig, std::move(frame.features));
   const bool use_wheels =
       frame.wheels.has_value() && !(s.track && s.track->doubts_wheels(frame.t_ns));
+  s.place_cameras(frame, use_wheels);
+  const FrameCorners corners(s.rig, std::move(frame.features));
   const bool is_blind = s.track && !use_wheels && !s.track->velocity;
   if (s.track) s.predict(frame, use_wheels);
   const bool is_placed = is_blind && s.fix_without_motion(corners);

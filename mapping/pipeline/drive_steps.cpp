@@ -2,6 +2,7 @@
 
 #include "mapping/pipeline/map_paths.hpp"
 #include "mapping/pipeline/odometry_checkpoint.hpp"
+#include "vo/exposure_shift.hpp"
 #include "vo/track_drive.hpp"
 
 namespace roadbook {
@@ -23,7 +24,11 @@ VoResult odometry_of(const Drive& drive,
                      MapFileBuilder& build,
                      const Progress& progress) {
   const std::string stage = odometry_stage(index);
-  if (build.has(stage)) return load_odometry(stage, build);
+  if (build.has(stage)) {
+    VoResult odometry = load_odometry(stage, build);
+    move_to_stamps(half_size(drive.rig()), odometry);
+    return odometry;
+  }
   TrackDriveOptions tracking = options.tracking;
   tracking.num_threads = options.num_threads;
   VoResult odometry = track_drive(drive, car.masks, tracking, progress);
@@ -32,6 +37,7 @@ VoResult odometry_of(const Drive& drive,
                   std::to_string(odometry.keyframes.size()) + ", want at least " +
                   std::to_string(options.min_keyframes) + " (does the car move?)");
   save_odometry(odometry, stage, build);
+  move_to_stamps(half_size(drive.rig()), odometry);
   return odometry;
 }
 

@@ -70,6 +70,7 @@ bool is_same_camera(const MountedCamera& a, const MountedCamera& b) {
   return a.camera.model == b.camera.model && a.camera.parameters == b.camera.parameters &&
          a.camera.width == b.camera.width && a.camera.height == b.camera.height &&
          a.camera.max_angle_rad == b.camera.max_angle_rad && a.time_offset_s == b.time_offset_s &&
+         a.exposed_after_s == b.exposed_after_s && a.rolling_shutter_s == b.rolling_shutter_s &&
          a.T_vehicle_camera.matrix() == b.T_vehicle_camera.matrix();
 }
 

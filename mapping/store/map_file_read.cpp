@@ -107,6 +107,10 @@ void read_sensors(const SqlDatabase& database, Map& map) {
     for (Eigen::Index i = 0; i < parameters.size(); ++i)
       mounted.camera.parameters[static_cast<std::size_t>(i)] = parameters[i];
     mounted.T_vehicle_camera = rows.pose(10);
+    if (rows.columns() > 12) {  // of earlier programs: at the stamp, as they took it
+      mounted.exposed_after_s = rows.real_or_null(11).value_or(0.0);
+      mounted.rolling_shutter_s = rows.real_or_null(12).value_or(0.0);
+    }
     cameras.push_back(std::move(mounted));
   }
   for (Rows rows(database, "wheel_models"); rows.next();) {

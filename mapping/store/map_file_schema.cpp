@@ -24,7 +24,7 @@ constexpr std::array<TableSql, 15> kTables{{
      "id INTEGER PRIMARY KEY, session INTEGER NOT NULL, camera INTEGER NOT NULL, "
      "name TEXT NOT NULL, model TEXT NOT NULL, width INTEGER NOT NULL, height INTEGER NOT NULL, "
      "max_angle_rad REAL NOT NULL, time_offset_s REAL NOT NULL, parameters BLOB NOT NULL, "
-     "T_vehicle_camera BLOB NOT NULL"},
+     "T_vehicle_camera BLOB NOT NULL, exposed_after_s REAL, rolling_shutter_s REAL"},
     {"wheel_models",
      "session INTEGER PRIMARY KEY, radius_left_m REAL NOT NULL, radius_right_m REAL NOT NULL, "
      "track_width_m REAL NOT NULL, wheelbase_m REAL NOT NULL, steering_ratio REAL NOT NULL, "
@@ -68,6 +68,15 @@ void create_table(const SqlDatabase& database, const TableSql& table) {
                std::string(table.columns) + ") STRICT");
 }
 
+// Columns that earlier programs did not write stand at the end.
+void add_real_column(const SqlDatabase& database,
+                     const std::string& table,
+                     const std::string& column) {
+  if (database.value("SELECT count(*) FROM pragma_table_info('" + table + "') WHERE name = '" +
+                     column + "'") == "0")
+    database.run("ALTER TABLE " + table + " ADD COLUMN " + column + " REAL");
+}
+
 }  // namespace
 
 const std::vector<std::string>& map_table_names() {
@@ -93,9 +102,9 @@ void create_map_tables(const SqlDatabase& database) {
 
 void migrate_map_tables(const SqlDatabase& database) {
   for (const TableSql& table : kTables) create_table(database, table);
-  if (database.value("SELECT count(*) FROM pragma_table_info('sessions') "
-                     "WHERE name = 'localised_share'") == "0")
-    database.run("ALTER TABLE sessions ADD COLUMN localised_share REAL");
+  add_real_column(database, "sessions", "localised_share");
+  add_real_column(database, "cameras", "exposed_after_s");
+  add_real_column(database, "cameras", "rolling_shutter_s");
 }
 
 }  // namespace roadbook

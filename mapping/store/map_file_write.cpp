@@ -37,7 +37,7 @@ void write_sessions(const SqlDatabase& database, const std::vector<Session>& ses
 
 void write_cameras(const SqlDatabase& database, const std::vector<Session>& sessions) {
   SqlStatement insert =
-      database.prepare("INSERT INTO cameras VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      database.prepare("INSERT INTO cameras VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   std::int64_t id = 0;
   for (std::size_t s = 0; s < sessions.size(); ++s)
     for (std::size_t c = 0; c < sessions[s].rig.cameras.size(); ++c) {
@@ -50,7 +50,8 @@ void write_cameras(const SqlDatabase& database, const std::vector<Session>& sess
       insert.bind_text(5, camera_model_key(mounted.camera.model));
       insert.bind(6, mounted.camera.width).bind(7, mounted.camera.height);
       insert.bind(8, mounted.camera.max_angle_rad).bind(9, mounted.time_offset_s);
-      insert.bind_blob(10, parameters).bind_blob(11, pose).run();
+      insert.bind_blob(10, parameters).bind_blob(11, pose);
+      insert.bind(12, mounted.exposed_after_s).bind(13, mounted.rolling_shutter_s).run();
     }
 }
 

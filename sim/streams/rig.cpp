@@ -67,7 +67,7 @@ RealCamera real_camera(const MountedCamera& nominal, const EffectSizes& effects)
   real.camera = turned.camera;
   real.T_vehicle_camera = turned.T_vehicle_camera;
   real.latency_s = size("latency");
-  real.rolling_shutter_s = size("rolling_shutter");
+  real.rolling_shutter_s = turned.rolling_shutter_s;
   real.vignetting = size("vignetting");
   real.gain = 1.0 + size("exposure");
   real.later_gain = 1.0 + size("exposure_step");

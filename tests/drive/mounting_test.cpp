@@ -116,6 +116,31 @@ TEST(StatedMounting, ImagesAreReadOnTheSharedClock) {
   }
 }
 
+// Triggered together, cam1 stamps its images 30 ms late: they stay images of the same instants.
+TEST(StatedMounting, ImagesOfOneTriggerStayTogetherWhereTheirClocksDiffer) {
+  const TemporaryFolder folder;
+  const auto d = write_small_drive(folder.path() / "d");
+  const std::size_t before = Drive::open(d).frame_count();
+  const fs::path yaml = d / "cam1/sensor.yaml";
+  write_text(yaml, read_text(yaml) + "time_offset: -0.03\nrolling_shutter: 0.02\n");
+  Drive drive = Drive::open(d);
+  ASSERT_EQ(drive.frame_count(), before);
+  EXPECT_TRUE(drive.has_image(3, 0));
+  EXPECT_TRUE(drive.has_image(3, 1));
+  EXPECT_EQ(drive.image_stamp_ns(3, 1), drive.frame_stamp_ns(3));
+  EXPECT_EQ(drive.written_stamp_ns(3, 1), kStart + 3 * kFrame);
+  EXPECT_FALSE(drive.read_image(3, 1).empty());
+  EXPECT_DOUBLE_EQ(drive.rig().cameras[1].exposed_after_s, -0.03);
+  EXPECT_DOUBLE_EQ(drive.rig().cameras[1].rolling_shutter_s, 0.02);
+  EXPECT_EQ(drive.rig().cameras[0].exposed_after_s, 0.0);
+  // A latency of all images moves the other sensors, that of one camera its exposure.
+  drive.correct({{"cam.latency", 0.5}, {"cam1.latency", 0.01}, {"cam0.rolling_shutter", 0.005}});
+  EXPECT_DOUBLE_EQ(drive.rig().cameras[1].exposed_after_s, -0.04);
+  EXPECT_DOUBLE_EQ(drive.rig().cameras[1].rolling_shutter_s, 0.02);
+  EXPECT_EQ(drive.rig().cameras[0].exposed_after_s, 0.0);
+  EXPECT_DOUBLE_EQ(drive.rig().cameras[0].rolling_shutter_s, 0.005);
+}
+
 // The poses belong to another body, 1.5 m ahead and turned to the left, with a late clock.
 TEST(StatedMounting, ReferencePosesOfAnotherBodyBecomeThoseOfTheVehicle) {
   const TemporaryFolder folder;

@@ -20,12 +20,13 @@ struct Key {
 constexpr std::string_view kIntrinsics = "intrinsics";
 constexpr std::string_view kDistortion = "distortion_coefficients";
 constexpr std::string_view kMounting = "T_BS";
+constexpr std::string_view kShutter = "rolling_shutter";
 constexpr std::array kKeys{
     Key{"focal", kIntrinsics},       Key{"aspect", kIntrinsics},   Key{"centre", kIntrinsics},
     Key{"centre_x", kIntrinsics},    Key{"centre_y", kIntrinsics}, Key{"distortion", kDistortion},
     Key{"distortion2", kDistortion}, Key{"rotation", kMounting},   Key{"pitch", kMounting},
     Key{"roll", kMounting},          Key{"position", kMounting},   Key{"lateral", kMounting},
-    Key{"height", kMounting}};
+    Key{"height", kMounting},        Key{kShutter, kShutter}};
 
 // Pinhole cameras state four intrinsics, omni five; double sphere states all and no distortion.
 std::size_t intrinsics_of(CameraModel model) {
@@ -38,6 +39,7 @@ std::vector<double> values_of(const MountedCamera& camera, std::string_view key)
   const auto first = camera.camera.parameters.begin();
   const auto middle = first + static_cast<std::ptrdiff_t>(intrinsics_of(camera.camera.model));
   if (key == kIntrinsics) return {first, middle};
+  if (key == kShutter) return {camera.rolling_shutter_s};
   if (key == kDistortion) return {middle, first + parameter_count(camera.camera.model)};
   std::vector<double> rows;
   for (Eigen::Index row = 0; row < 4; ++row)
