@@ -84,16 +84,20 @@ TEST(StatedMounting, FrictionIsReadOnTheVehiclesClock) {
   EXPECT_EQ(i, kFrames);
 }
 
+// Writes `lines` into a sensor.yaml in place of its time offset.
+void state_times(const fs::path& yaml, const std::string& lines) {
+  std::string text = read_text(yaml);
+  if (const auto at = text.find("time_offset"); at != std::string::npos)
+    text.erase(at, text.find('\n', at) + 1 - at);
+  write_text(yaml, text + lines);
+}
+
 // The tables of both cameras are late by a quarter of a second; the offset takes it off.
 TEST(StatedMounting, ImagesAreReadOnTheSharedClock) {
   const TemporaryFolder folder;
   const auto d = write_small_drive(folder.path() / "d");
   for (const char* const camera : {"cam0", "cam1"}) {
-    const fs::path yaml = d / camera / "sensor.yaml";
-    std::string text = read_text(yaml);
-    if (const auto at = text.find("time_offset"); at != std::string::npos)
-      text.erase(at, text.find('\n', at) + 1 - at);
-    write_text(yaml, text + "time_offset: -0.25\n");
+    state_times(d / camera / "sensor.yaml", "time_offset: -0.25\n");
     std::string late;
     std::istringstream rows(read_text(d / camera / "data.csv"));
     for (std::string row; std::getline(rows, row);) {
@@ -120,11 +124,10 @@ TEST(StatedMounting, ImagesAreReadOnTheSharedClock) {
 TEST(StatedMounting, ImagesOfOneTriggerStayTogetherWhereTheirClocksDiffer) {
   const TemporaryFolder folder;
   const auto d = write_small_drive(folder.path() / "d");
-  const std::size_t before = Drive::open(d).frame_count();
-  const fs::path yaml = d / "cam1/sensor.yaml";
-  write_text(yaml, read_text(yaml) + "time_offset: -0.03\nrolling_shutter: 0.02\n");
+  state_times(d / "cam0/sensor.yaml", "");
+  state_times(d / "cam1/sensor.yaml", "time_offset: -0.03\nrolling_shutter: 0.02\n");
   Drive drive = Drive::open(d);
-  ASSERT_EQ(drive.frame_count(), before);
+  ASSERT_EQ(drive.frame_count(), static_cast<std::size_t>(kFrames));
   EXPECT_TRUE(drive.has_image(3, 0));
   EXPECT_TRUE(drive.has_image(3, 1));
   EXPECT_EQ(drive.image_stamp_ns(3, 1), drive.frame_stamp_ns(3));
