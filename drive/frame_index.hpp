@@ -30,9 +30,9 @@ struct FrameIndex {
 [[nodiscard]] FrameIndex index_frames(const std::vector<ImageStream>& images, double tolerance_s);
 
 /// Where cameras with different time offsets (`shifted_ns`) were triggered together, the offsets
-/// part the images of an instant. If equal offsets make fewer instants by a tenth, gives all streams
-/// the offset of the first camera, and returns by camera how much later [ns] than the
-/// stamp its images were taken; otherwise changes nothing and returns zeros.
+/// part the images of an instant. If equal offsets make fewer instants by a tenth, gives all
+/// streams the offset of the first camera, and returns by camera how much later [ns] than the stamp
+/// its images were taken; otherwise changes nothing and returns zeros.
 [[nodiscard]] std::vector<std::int64_t> join_triggered_images(std::vector<ImageStream>& images,
                                                               double tolerance_s);
 

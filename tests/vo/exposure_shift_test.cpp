@@ -17,11 +17,10 @@ constexpr std::int64_t kStartNs = 1'000'000'000;
 
 // A car that gathers speed in a bend: 3 m/s and more, radius 12 m, in closed form.
 Eigen::Isometry3d pose_at(double t_s) {
-  constexpr double kRadius = 12.0;
+  constexpr double kBendM = 12.0;
   const double way = 3.0 * t_s + 0.5 * 0.8 * t_s * t_s;
-  const double heading = way / kRadius;
-  return pose_from_planar(kRadius * std::sin(heading), kRadius * (1.0 - std::cos(heading)),
-                          heading);
+  const double heading = way / kBendM;
+  return pose_from_planar(kBendM * std::sin(heading), kBendM * (1.0 - std::cos(heading)), heading);
 }
 
 MountedCamera camera_to(double yaw) {

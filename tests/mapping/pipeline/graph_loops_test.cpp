@@ -33,18 +33,19 @@ TEST(GraphLoops, OfFewLapsAllAcceptedOnesEnter) {
   for (const std::size_t i : kept) EXPECT_TRUE(loops[i].edge.accepted);
 }
 
-TEST(GraphLoops, OfManyLapsThoseToTheLastPassEnter) {
+TEST(GraphLoops, OfManyLapsSomeToTheLastPassEnter) {
   constexpr int kLaps = 20;
   const auto loops = loops_of_laps(kLaps);
   const auto kept = loops_of_graph(loops, std::vector<int>(kLaps * kPlaces, 0));
-  EXPECT_LE(kept.size(), static_cast<std::size_t>(kLaps * kPlaces / 4));
+  EXPECT_LE(kept.size(), 1000U);
   std::map<int, int> of_lap;
   for (const std::size_t i : kept) {
     EXPECT_TRUE(loops[i].edge.accepted);
     EXPECT_EQ(loops[i].edge.from, loops[i].edge.to - kPlaces);
     ++of_lap[loops[i].edge.to / kPlaces];
   }
-  for (int lap = 1; lap < kLaps; ++lap) EXPECT_EQ(of_lap[lap], kPlaces / 4);
+  for (int lap = 1; lap < kLaps; ++lap)
+    EXPECT_NEAR(of_lap[lap], 1000.0 / kLaps, 0.25 * 1000.0 / kLaps);
 }
 
 // A segment that only loops join to the earlier ones stays joined to each of them.
@@ -56,8 +57,8 @@ TEST(GraphLoops, SegmentsStayJoined) {
   std::set<int> joined;  // groups of segment 1 with a loop to segment 0
   for (const std::size_t i : loops_of_graph(loops, segment))
     if (loops[i].edge.to >= 3 * kPlaces && loops[i].edge.from < 3 * kPlaces)
-      joined.insert(loops[i].edge.to / 4);
-  EXPECT_EQ(joined.size(), static_cast<std::size_t>((kLaps - 3) * kPlaces / 4));
+      joined.insert(loops[i].edge.to / 10);
+  EXPECT_EQ(joined.size(), static_cast<std::size_t>((kLaps - 3) * kPlaces / 10));
 }
 
 }  // namespace
