@@ -210,6 +210,21 @@ TEST(SimulatedDrive, AGroundThatRisesBeforeTheCarIsNamedWithItsSlope) {
   test::expect_cause(drive, folder / "map.gpkg", "ground.slope", -0.012);
 }
 
+TEST(SimulatedDrive, AModelOfALateCameraMendsTheMap) {
+  const auto folder = test::fresh_folder("late_camera");
+  SimulateOptions simulation;
+  simulation.effects = {{"cam0.latency", 0.03}};
+  const auto drive_folder = small_zurich(folder, simulation);
+  const Drive drive = Drive::open(drive_folder);
+  MapOptions options = without_covariances();
+  build_map({drive_folder}, folder / "late.gpkg", options);
+  options.model = simulation.effects;
+  build_map({drive_folder}, folder / "told.gpkg", options);
+  expect_accurate(folder / "told.gpkg", drive, 0.5);
+  EXPECT_GT(median_error_m(folder / "late.gpkg", drive),
+            2.0 * median_error_m(folder / "told.gpkg", drive));
+}
+
 TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCamera) {
   const auto folder = test::fresh_folder("small_zurich");
   SimulateOptions simulation;
