@@ -43,7 +43,7 @@ bool PixelCost::Evaluate(const double* const* parameters,
   const Eigen::Vector3d p_map = Eigen::Map<const Eigen::Vector3d>(parameters[1]);
   const Eigen::Vector3d turn = Eigen::Map<const Eigen::Vector3d>(parameters[2]);
   const double focal = 1.0 + parameters[2][3];
-  const double delay = parameters[2][4];
+  const double delay = parameters[2][4] - mounted_.exposed_after_s;
   const Eigen::Isometry3d back = se3_exp(delay * twist_);
   const Eigen::Vector3d q_stamp = T.inverse() * p_map;  // in the vehicle at the stamp
   const Eigen::Vector3d q = back * q_stamp;             // when the image was taken

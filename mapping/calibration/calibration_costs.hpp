@@ -19,8 +19,8 @@ using CameraBlock = std::array<double, kColumnsOfCamera>;
 using WheelBlock = std::array<double, kColumnsOfWheels>;
 
 /// A pixel, over its standard deviation: predicted minus measured. With T the pose, d the delay and
-/// xi the twist, the image shows the point from T exp(-d xi). Parameter blocks: pose, point,
-/// camera.
+/// xi the twist, the image shows the point from T exp((e - d) xi), e: `exposed_after_s` of the
+/// camera. Parameter blocks: pose, point, camera.
 class PixelCost : public ceres::SizedCostFunction<2, 7, 3, kColumnsOfCamera> {
  public:
   /// Keeps references; `twist` may change between two solves.

@@ -128,6 +128,19 @@ void add_motions(const Map& map,
   }
 }
 
+// The map was built with one model: the first session that is used stands for all.
+void take_off_known_exposures(const Map& map,
+                              const std::vector<CalibrationSession>& sessions,
+                              Rig& rig) {
+  for (std::size_t s = 0; s < sessions.size(); ++s) {
+    const auto& known = map.sessions[s].rig.cameras;
+    if (!sessions[s].used || known.size() != rig.cameras.size()) continue;
+    for (std::size_t c = 0; c < known.size(); ++c)
+      rig.cameras[c].exposed_after_s -= known[c].exposed_after_s;
+    return;
+  }
+}
+
 }  // namespace
 
 void set_twists(std::vector<CalibrationPose>& poses) {
@@ -157,6 +170,7 @@ CalibrationData calibration_data(const Map& map,
   constexpr double kCellM = 2.5;
   CalibrationData data;
   data.rig = rig;
+  take_off_known_exposures(map, sessions, data.rig);
   data.poses = poses_of(map, sessions, options.stretch_m);
   const std::size_t cameras = rig.cameras.size();
   const std::size_t images = std::max<std::size_t>(1, data.poses.size() * cameras);

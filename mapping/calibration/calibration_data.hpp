@@ -41,7 +41,9 @@ struct CalibrationMotion {
 };
 
 struct CalibrationData {
-  Rig rig;  ///< as stated, full-size images; the same in all drives
+  /// As stated, full-size images; the same in all drives. `exposed_after_s`: what the map has not
+  /// yet moved its corners by; negative: what it moved them by beyond that.
+  Rig rig;
   std::vector<CalibrationPose> poses;
   std::vector<Eigen::Vector3d> points;   ///< [m, map]
   std::vector<BundleObservation> views;  ///< full-size images, point by point

@@ -246,5 +246,30 @@ TEST(CalibrationCosts, DerivativesAreThoseOfDifferences) {
   expect_derivatives(ground, {T, point}, {6, 3}, 1e-4);
 }
 
+// A map that was told of a delay has moved its corners: that delay remains to be subtracted.
+TEST(CalibrationCosts, ADelayThatTheMapKnewCountsOnce) {
+  const test::CalibrationDrive drive = test::calibration_drive({}, 2);
+  const BundleObservation& view = drive.data.views[500];
+  const CalibrationPose& pose = drive.data.poses[static_cast<std::size_t>(view.pose)];
+  const PoseBlock T = block_of(pose.T_map_vehicle);
+  const Eigen::Vector3d& p = drive.data.points[static_cast<std::size_t>(view.point)];
+  Map map;
+  map.sessions.resize(1);
+  map.sessions[0].rig = drive.data.rig;
+  constexpr double kLate = 0.05;
+  for (MountedCamera& camera : map.sessions[0].rig.cameras) camera.exposed_after_s = -kLate;
+  const Rig rig = calibration_data(map, drive.data.rig, {{true, {}, {}}}).rig;
+  const auto residual = [&](const Rig& of, double delay) {
+    const PixelCost cost(of.cameras[static_cast<std::size_t>(view.camera)], pose.twist, view);
+    const CameraBlock camera{0.0, 0.0, 0.0, 0.0, delay};
+    const std::array<const double*, 3> blocks{T.data(), p.data(), camera.data()};
+    Eigen::Vector2d r;
+    EXPECT_TRUE(cost.Evaluate(blocks.data(), r.data(), nullptr));
+    return r;
+  };
+  EXPECT_NEAR((residual(rig, kLate) - residual(drive.data.rig, 0.0)).norm(), 0.0, 1e-9);
+  EXPECT_GT((residual(rig, 0.0) - residual(drive.data.rig, 0.0)).norm(), 0.1);
+}
+
 }  // namespace
 }  // namespace roadbook
