@@ -22,7 +22,8 @@ namespace roadbook {
 /// image that has one. Corners that leave the image stay. Then `p_odom` of the tracks is moved with
 /// them: points of a camera that is late by dt lie ahead by speed * dt.
 ///
-/// `half_rig`: cameras of the half-size images. Linear in the corners; deterministic.
+/// `half_rig`: cameras of the half-size images. Quadratic in the corners of an image;
+/// deterministic.
 void move_to_stamps(const Rig& half_rig, VoResult& odometry);
 
 }  // namespace roadbook

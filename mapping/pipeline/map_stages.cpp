@@ -213,8 +213,11 @@ Relaxed relax_poses(const MappingInput& input,
   std::vector<std::uint8_t> agrees(loops.size(), 0);
   const GraphState state{result.T_map_vehicle, {}, {}};
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    agrees[i] = edge_chi2(motion_of(loops[i].edge), state) <=
-                kGateOutsideGraph * options.graph.max_loop_chi2;
+    const LoopEdge& edge = loops[i].edge;
+    agrees[i] = result.component[static_cast<std::size_t>(edge.from)] ==
+                    result.component[static_cast<std::size_t>(edge.to)] &&
+                edge_chi2(motion_of(loops[i].edge), state) <=
+                    kGateOutsideGraph * options.graph.max_loop_chi2;
     loops[i].edge.weight = loops[i].edge.accepted && agrees[i] != 0 ? 1.0 : 0.0;
   }
   for (std::size_t i = 0; i < in_graph.size(); ++i) {

@@ -90,6 +90,8 @@ void check_sessions(const Map& map, Findings& findings) {
       findings.add("sessions", i, "t_end_ns", std::to_string(s.t_end_ns), "at least t_begin_ns");
     for (const MountedCamera& camera : s.rig.cameras) {
       findings.pose("sessions", i, "T_vehicle_camera", camera.T_vehicle_camera, kCalibrated);
+      findings.finite("sessions", i, "exposed_after_s", camera.exposed_after_s);
+      findings.finite("sessions", i, "rolling_shutter_s", camera.rolling_shutter_s);
       for (const double p : camera.camera.parameters)
         findings.finite("sessions", i, "camera parameters", p);
     }

@@ -23,7 +23,8 @@ constexpr int kMappings = 2;
 bool is_same_camera(const MountedCamera& a, const MountedCamera& b) {
   return a.name == b.name && a.camera.model == b.camera.model &&
          a.camera.parameters == b.camera.parameters && a.camera.width == b.camera.width &&
-         a.camera.height == b.camera.height &&
+         a.camera.height == b.camera.height && a.exposed_after_s == b.exposed_after_s &&
+         a.rolling_shutter_s == b.rolling_shutter_s &&
          a.T_vehicle_camera.matrix() == b.T_vehicle_camera.matrix();
 }
 

@@ -55,7 +55,7 @@ std::string row_text(const std::vector<double>& values) {
   for (const double value : values)
     text += (text.empty() ? "[" : ", ") +
             fixed(value, std::abs(value) < kSmall ? kFineDigits : kPixelDigits);
-  return text + "]";
+  return values.size() == 1 ? text.substr(1) : text + "]";
 }
 
 }  // namespace

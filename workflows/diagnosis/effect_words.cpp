@@ -76,7 +76,7 @@ constexpr std::array kWords{
     EffectWords{"cam.rolling_shutter", "rolling shutter",
                 "the rows of {sensor} are exposed one after the other, downwards",
                 "the rows of {sensor} are exposed one after the other, upwards", "ms", 1000.0,
-                "set `rolling_shutter` in the sensor.yaml of {sensor} to {size} ms (in seconds)"},
+                kCalibrate},
     EffectWords{"cam.focal", "focal length", "the focal length of {sensor} is longer than stated",
                 "the focal length of {sensor} is shorter than stated", "%", 100.0, kCalibrate},
     EffectWords{"cam.centre", "image centre",
