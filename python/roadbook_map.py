@@ -61,6 +61,8 @@ class Camera(NamedTuple):
     time_offset_s: to add to the camera's stamps
     parameters: 9 numbers, those that the model does not use are zero
     T_vehicle_camera: 4x4
+    exposed_after_s: of the middle row, after the stamp; the map's corners are moved to the stamp
+    rolling_shutter_s: from the exposure of the first row to that of the last
     """
 
     name: str
@@ -71,6 +73,8 @@ class Camera(NamedTuple):
     time_offset_s: float
     parameters: list[float]
     T_vehicle_camera: Matrix
+    exposed_after_s: float
+    rolling_shutter_s: float
 
 
 class Session(NamedTuple):
@@ -304,11 +308,14 @@ class MapFile(GeoPackage):
                 "session": which, "camera": as_integer, "name": as_text, "model": as_text,
                 "width": as_integer, "height": as_integer, "max_angle_rad": as_real,
                 "time_offset_s": as_real, "parameters": as_matrix(1, 9),
-                "T_vehicle_camera": as_pose}):
+                "T_vehicle_camera": as_pose, "exposed_after_s": as_optional(as_real),
+                "rolling_shutter_s": as_optional(as_real)}):
             own = cameras[r.pop("session")]
             if r.pop("camera") != len(own):
                 raise self._bad("cameras", "a number twice or a gap", "numbers from 0")
-            own.append(Camera(**r | {"parameters": r["parameters"][0]}))
+            # Earlier programs took all images for exposed at the stamp.
+            times = {key: r[key] or 0.0 for key in ("exposed_after_s", "rolling_shutter_s")}
+            own.append(Camera(**r | {"parameters": r["parameters"][0]} | times))
         wheels = {r.pop("session"): r for r in self._read(
             "wheel_models", {"session": which} | dict.fromkeys(WHEEL_VALUES, as_real))}
         vehicles = {r.pop("session"): r for r in self._read(

@@ -116,6 +116,7 @@ void print_sessions(const Map& map) {
       line.real(m.camera.max_angle_rad).real(m.time_offset_s);
       for (const double parameter : m.camera.parameters) line.real(parameter);
       line.matrix(m.T_vehicle_camera.matrix());
+      line.real(m.exposed_after_s).real(m.rolling_shutter_s);
     }
     print_wheels(s);
     Line vehicle("vehicle");
