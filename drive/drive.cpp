@@ -249,6 +249,10 @@ std::string Drive::digest() const {
     digest.update(table.lexically_relative(impl_->content.sensors).string()).update_file(table);
   for (const auto& stream : impl_->content.images) digest.update(stream.digest);
   for (const auto& [camera, stream] : impl_->content.segmentations) digest.update(stream.digest);
+  // Earlier programs counted the images of such cameras as other instants.
+  for (std::size_t c = 0; c < impl_->content.images.size(); ++c)
+    if (impl_->content.images[c].shifted_ns != offset_ns(rig().cameras[c].time_offset_s))
+      digest.update("an instant with the first camera");
   return digest.hex();
 }
 
