@@ -59,6 +59,11 @@ std::vector<Problem> doubts_about(const Drive& drive, const Map& map, const std:
       doubts.push_back({Severity::kWarning, drive.folder().string(), 0, "drive",
                         "session " + session.name + " of the map itself",
                         "a drive that the map does not have (the figures are too good)"});
+  for (const MountedCamera& camera : drive.rig().cameras)
+    if (camera.rolling_shutter_s != 0.0)
+      doubts.push_back({Severity::kWarning, (drive.folder() / camera.name).string(), 0,
+                        "rolling_shutter", fixed(1e3 * camera.rolling_shutter_s, 1) + " ms",
+                        "0 ms: a localisation does not correct it"});
   const bool has_equal_rig = std::any_of(
       map.sessions.begin(), map.sessions.end(),
       [&](const Session& session) { return has_same_cameras(session.rig, drive.rig()); });

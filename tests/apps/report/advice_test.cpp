@@ -68,12 +68,14 @@ TEST(Advice, SaysTheNewValuesOfACamera) {
   camera.camera.model = CameraModel::kKannalaBrandt;
   camera.camera.parameters = {400.0, 401.0, 320.5, 240.0, -0.01, 0.002, 0.0, 0.0};
   camera.T_vehicle_camera.translation() = Eigen::Vector3d(1.5, 0.9, 1.1);
+  camera.rolling_shutter_s = 0.02;
   vehicle.rig.cameras.push_back(camera);
   Diagnosis d;
   for (const auto& [effect, size] : std::map<std::string, double>{{"cam2.centre_y", 2.0},
                                                                   {"cam2.distortion2", 0.001},
                                                                   {"cam2.focal", 0.01},
                                                                   {"cam2.height", -0.05},
+                                                                  {"cam2.rolling_shutter", 0.005},
                                                                   {"cam.height", 0.01}}) {
     d.causes.push_back(cause(effect, size, 0.001));
     d.extended[effect] = size;
@@ -94,6 +96,8 @@ TEST(Advice, SaysTheNewValuesOfACamera) {
             "(stated: [-0.01000, 0.00200, 0.00000, 0.00000])");
   EXPECT_NE(action_of("cam2.height").find("Set `T_BS` of cam2 to [1.00000, "), std::string::npos);
   EXPECT_NE(action_of("cam2.height").find(", 1.05000, "), std::string::npos);
+  EXPECT_EQ(action_of("cam2.rolling_shutter"),
+            "Set `rolling_shutter` of cam2 to 0.02500 (stated: 0.02000)");
   EXPECT_EQ(action_of("cam.height"),
             "Correct it with `--write-model` and `roadbook map --model`, or calibrate every camera "
             "again");
