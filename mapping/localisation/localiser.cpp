@@ -106,6 +106,7 @@ struct Localiser::State {
   const LandmarkIndex& index;
   Rig stated_rig;
   Rig rig;  // the same, with cameras where they exposed the present frame
+  Vector6d exposure_twist = Vector6d::Zero();  // for `rig`
   LocaliserOptions options;
   std::optional<Relocaliser> relocaliser;  // made when it is needed for the first time
   std::optional<Eigen::Vector3d> start;    // where the vehicle is said to stand
@@ -154,12 +155,14 @@ void Localiser::State::place_cameras(const LocaliserFrame& frame, bool use_wheel
   const double dt = last_frame_ns ? seconds(*last_frame_ns, frame.t_ns) : 0.0;
   last_frame_ns = frame.t_ns;
   if (!exposes_beside_stamp(stated_rig)) return;
-  Vector6d twist = Vector6d::Zero();
+  // The velocity between two fixes depends on where the cameras were placed for them. Taken over at
+  // once, a delay of more than one frame would swing up.
+  constexpr double kShareOfNew = 0.2;
   if (use_wheels && dt > 0.0)
-    twist = se3_log(planar_transform(*frame.wheels)) / dt;
+    exposure_twist = se3_log(planar_transform(*frame.wheels)) / dt;
   else if (track && track->velocity)
-    twist = *track->velocity;
-  rig = rig_at_exposure(stated_rig, twist);
+    exposure_twist += kShareOfNew * (*track->velocity - exposure_twist);
+  rig = rig_at_exposure(stated_rig, exposure_twist);
 }
 
 // Moves the track to the time of the frame, by the wheels or with its velocity.

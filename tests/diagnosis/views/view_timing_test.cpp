@@ -44,6 +44,20 @@ TEST(ViewTiming, TakesOffTheRatesWhatTheWheelsReadTooMuch) {
   EXPECT_NEAR(xi[5], kTrueYawRate, 1e-9);
 }
 
+// What is stated of a camera, or what the map has not yet moved its corners by, adds to the
+// effects.
+TEST(ViewTiming, StatedTimesOfACameraAddToTheEffects) {
+  ViewData data;
+  MountedCamera& camera = data.bundle.cameras.emplace_back();
+  camera.name = "cam0";
+  camera.camera.height = 100;
+  camera.exposed_after_s = -0.03;
+  camera.rolling_shutter_s = 0.02;
+  const ViewTiming timing(data, {{"cam0.latency", 0.01}, {"cam.rolling_shutter", 0.005}});
+  EXPECT_NEAR(timing.after_stamp(camera.camera, 0, 49.5), -0.04, 1e-12);
+  EXPECT_NEAR(timing.after_stamp(camera.camera, 0, 99.5), -0.04 + 0.5 * 0.025, 1e-12);
+}
+
 // Late wheels read earlier motion; its mean over [0, dt] is that at dt / 2.
 TEST(ViewTiming, LateWheelsReadAnEarlierMotion) {
   constexpr double kLate = 0.05;

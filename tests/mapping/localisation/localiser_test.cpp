@@ -160,6 +160,29 @@ TEST(Localiser, IsFoundWithoutAGuessAnywhereAndInEitherDirection) {
   }
 }
 
+TEST(Localiser, LateImagesAreSeenFromWhereTheCarWas) {
+  constexpr double kFramesLate = 1.25;
+  auto place = test::synthetic_place(2);
+  const LandmarkIndex index(place.map);
+  const test::SyntheticPlace stated = place;
+  for (MountedCamera& camera : place.half_rig.cameras) camera.exposed_after_s = -kFramesLate * 0.08;
+  for (const bool has_wheels : {true, false}) {
+    RingDrive drive;
+    drive.has_wheels = has_wheels;
+    Random random(7, "late corners");
+    drive.change = [&](int i, std::vector<Features>& features) {
+      features = test::synthetic_features(
+          stated, test::ring_pose(kRadius, kFrameStep * (i - kFramesLate), drive.left_m), random,
+          drive.corners);
+    };
+    const auto late = drive_through(stated, index, drive);
+    EXPECT_NEAR(late.back().off_m(), kFrameStep * kFramesLate, 0.03);
+    const auto driven = drive_through(place, index, drive);
+    EXPECT_TRUE(driven.back().has_fix());
+    EXPECT_LT(driven.back().off_m(), 0.03);
+  }
+}
+
 TEST(Localiser, AnotherPlaceIsLost) {
   const auto place = test::synthetic_place(3);
   const auto other = test::synthetic_place(4);

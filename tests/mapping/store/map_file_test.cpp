@@ -68,6 +68,8 @@ void expect_equal(const Map& a, const Map& b) {
       EXPECT_EQ(s.rig.cameras[c].camera.parameters, t.rig.cameras[c].camera.parameters);
       EXPECT_EQ(s.rig.cameras[c].camera.height, t.rig.cameras[c].camera.height);
       EXPECT_EQ(s.rig.cameras[c].time_offset_s, t.rig.cameras[c].time_offset_s);
+      EXPECT_EQ(s.rig.cameras[c].exposed_after_s, t.rig.cameras[c].exposed_after_s);
+      EXPECT_EQ(s.rig.cameras[c].rolling_shutter_s, t.rig.cameras[c].rolling_shutter_s);
       EXPECT_EQ(s.rig.cameras[c].T_vehicle_camera.matrix(),
                 t.rig.cameras[c].T_vehicle_camera.matrix());
     }

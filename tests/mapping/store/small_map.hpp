@@ -69,6 +69,8 @@ inline Session small_session(int index, int cameras, Random& random) {
     mounted.camera.max_angle_rad = 1.6;
     mounted.T_vehicle_camera = random_pose(random);
     mounted.time_offset_s = random.normal();
+    mounted.exposed_after_s = 0.01 * (c + 1);
+    mounted.rolling_shutter_s = -0.02 * (c + 1);
     s.rig.cameras.push_back(mounted);
   }
   if (index % 2 == 0) {
